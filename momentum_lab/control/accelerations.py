@@ -1,0 +1,159 @@
+"""Which accelerations give an admissible momentum rate: the chapter's Eq. 34 as one quadratic program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from momentum_lab.control.controller import Reference
+from momentum_lab.control.qp import QuadraticProgram, solve
+from momentum_lab.robot.model import RobotModel
+from momentum_lab.robot.state import Dynamics
+
+# Keeps the program strictly convex where neither momentum nor posture decides.
+_RIDGE = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class MotionWeights:
+    """What matters in Eq. 34, and how firmly.
+
+    Attributes:
+        momentum: w_b, against 1 - w_b for everything else.
+        pelvis: weight of the pelvis orientation against one joint of the upper body.
+        stiffness: of posture and pelvis, 1/s^2.
+        damping: of posture and pelvis, 1/s.
+        contact_rate: kappa, at which stance feet come to rest and lie flat, 1/s.
+        joint_limit_rate: at which joints brake before their limits, 1/s.
+    """
+
+    momentum: float
+    pelvis: float
+    stiffness: float
+    damping: float
+    contact_rate: float
+    joint_limit_rate: float
+
+
+def admissible_accelerations(
+    robot: RobotModel, dynamics: Dynamics, rate: np.ndarray, reference: Reference, weights: MotionWeights
+) -> np.ndarray:
+    """Generalized accelerations that give a momentum rate, keep the stance feet still and mind the posture.
+
+    min w_b |W (dh_a - A_G a - dA_G v)|^2 + (1 - w_b) (|theta''_d - theta''|^2 + w_p |omega'_d - omega'|^2)
+    subject to J_c a = dv_c - dJ_c v and theta''_l <= theta'' <= theta''_u (Eqs. 31, 32, 34, with squared norms;
+    the pelvis term is an extension). W = diag(1 / m, 1 / I) makes momentum rates into accelerations. Joints of
+    feet that do not carry follow the posture like the upper body.
+
+    Args:
+        robot: the robot.
+        dynamics: the state with everything computed.
+        rate: admissible momentum rate dh_a about the CoM (6,), N and N m.
+        reference: the posture, the pelvis axes and the stance feet.
+        weights: what matters how much.
+
+    Returns:
+        Accelerations a (nv,), m/s^2 and rad/s^2.
+
+    Raises:
+        SolverError: no acceleration keeps the feet still and the joints within their bounds.
+    """
+    hessian, gradient = _momentum_objective(robot.mass, dynamics, rate, weights.momentum)
+    _add_posture(hessian, gradient, dynamics, reference, _free_joints(robot, reference.stance), weights)
+    _add_pelvis(hessian, gradient, dynamics, reference, weights)
+    hessian.flat[:: robot.nv + 1] += _RIDGE
+    matrix, target = contact_constraint(dynamics, reference, weights.contact_rate)
+    low, high = _joint_bounds(robot, dynamics, weights.joint_limit_rate)
+    unbounded = np.full(6, np.inf)
+    problem = QuadraticProgram(
+        hessian,
+        gradient,
+        matrix,
+        np.concatenate([-unbounded, low, target]),
+        np.concatenate([unbounded, high, target]),
+        _labels(robot, reference.stance),
+    )
+    return solve(problem).x
+
+
+def contact_constraint(
+    dynamics: Dynamics, reference: Reference, contact_rate: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Rows J_c (6 S, nv) and values dv_c - dJ_c v (6 S,) that keep S stance feet still, flat and on the ground.
+
+    Eq. 31 with dv_c = -2 kappa J_c v - kappa^2 e. The error e holds height and tilt only: a foot that has
+    slipped stays where it is.
+    """
+    stance = list(reference.stance)
+    jacobian = dynamics.sole_jacobian[stance]
+    target = -2.0 * contact_rate * (jacobian @ dynamics.state.v) - dynamics.sole_bias[stance]
+    pull = contact_rate**2
+    target[:, 2] -= pull * (dynamics.sole_position[stance, 2] - reference.sole_height[stance])
+    normal = dynamics.sole_rotation[stance, :, 2]
+    target[:, 3] += pull * normal[:, 1]
+    target[:, 4] -= pull * normal[:, 0]
+    return jacobian.reshape(-1, jacobian.shape[2]), target.ravel()
+
+
+def _momentum_objective(
+    mass: float, dynamics: Dynamics, rate: np.ndarray, weight: float
+) -> tuple[np.ndarray, np.ndarray]:
+    scale = np.full(6, 1.0 / mass)
+    scale[3:] = 1.0 / dynamics.locked_inertia.diagonal()
+    weighted = dynamics.centroidal_map.T * (weight * scale**2)
+    return weighted @ dynamics.centroidal_map, -weighted @ (rate - dynamics.centroidal_bias)
+
+
+def _add_posture(
+    hessian: np.ndarray,
+    gradient: np.ndarray,
+    dynamics: Dynamics,
+    reference: Reference,
+    joints: np.ndarray,
+    weights: MotionWeights,
+) -> None:
+    """theta''_d = k (theta_0 - theta) - d theta' for the joints that do not carry."""
+    angle, speed = dynamics.state.q[7 + joints], dynamics.state.v[6 + joints]
+    wanted = weights.stiffness * (reference.posture[joints] - angle) - weights.damping * speed
+    weight = 1.0 - weights.momentum
+    hessian[6 + joints, 6 + joints] += weight
+    gradient[6 + joints] -= weight * wanted
+
+
+def _add_pelvis(
+    hessian: np.ndarray,
+    gradient: np.ndarray,
+    dynamics: Dynamics,
+    reference: Reference,
+    weights: MotionWeights,
+) -> None:
+    """omega'_d = -k log(R R_d^T) - d omega for the pelvis."""
+    jacobian = dynamics.pelvis_jacobian[3:]
+    tilt = pin.log3(dynamics.pelvis_rotation @ reference.pelvis_rotation.T)
+    spin = jacobian @ dynamics.state.v
+    wanted = -weights.stiffness * tilt - weights.damping * spin - dynamics.pelvis_bias[3:]
+    weighted = (1.0 - weights.momentum) * weights.pelvis * jacobian.T
+    hessian += weighted @ jacobian
+    gradient -= weighted @ wanted
+
+
+def _joint_bounds(robot: RobotModel, dynamics: Dynamics, rate: float) -> tuple[np.ndarray, np.ndarray]:
+    """Accelerations theta''_l, theta''_u (na,) that brake critically damped before the joint limits."""
+    angle, braking = dynamics.state.q[7:], -2.0 * rate * dynamics.state.v[6:]
+    low = rate**2 * (robot.position_lower - angle) + braking
+    high = rate**2 * (robot.position_upper - angle) + braking
+    return low, high
+
+
+def _free_joints(robot: RobotModel, stance: tuple[int, ...]) -> np.ndarray:
+    """Joints of the upper body and of feet that do not carry, among the actuated joints."""
+    lifted = [sole.joints for foot, sole in enumerate(robot.soles) if foot not in stance]
+    return np.concatenate([robot.upper_body, *lifted])
+
+
+def _labels(robot: RobotModel, stance: tuple[int, ...]) -> tuple[tuple[int, str], ...]:
+    joints = ((1, f"limit of joint {name}") for name in robot.joint_names)
+    feet = ((6, f"contact of the {robot.foot_names[foot]} foot") for foot in stance)
+    return ((6, "free base"), *joints, *feet)

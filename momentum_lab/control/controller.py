@@ -1,0 +1,82 @@
+"""What every controller is given and what it answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from momentum_lab.robot.state import Dynamics
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """What the robot shall do; F is the number of feet.
+
+    Attributes:
+        com: desired centre of mass r_d in the world (3,), m.
+        com_velocity: its desired velocity (3,), m/s.
+        angular_momentum: desired angular momentum k_d about the CoM (3,), N m s.
+        posture: desired joint angles (na,), rad.
+        pelvis_rotation: desired pelvis axes in the world (3, 3).
+        stance: the feet that carry the robot, as indices.
+        sole_height: height of the ground under each sole origin (F,), m.
+    """
+
+    com: np.ndarray
+    com_velocity: np.ndarray
+    angular_momentum: np.ndarray
+    posture: np.ndarray
+    pelvis_rotation: np.ndarray
+    stance: tuple[int, ...]
+    sole_height: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class ControlOutput:
+    """A controller's answer and its reasons; momentum rates about the CoM, linear before angular.
+
+    Attributes:
+        torque: joint torques (na,), N m.
+        acceleration: the generalized acceleration they are meant to cause (nv,).
+        momentum_rate_desired: what the feedback laws ask for (6,), N and N m.
+        momentum_rate_admissible: what the ground can give of it (6,), N and N m.
+        foot_wrench_admissible: ground on each foot about the sole origin, world axes (F, 6).
+        cop_desired: CoP that the desired rates need (2,), m.
+        cop_admissible: CoP of the admissible wrenches (2,), m.
+        failure: why the torque is the fallback torque; None when it is not.
+        memory: what the controller wants to be given at the next tick.
+    """
+
+    torque: np.ndarray
+    acceleration: np.ndarray
+    momentum_rate_desired: np.ndarray
+    momentum_rate_admissible: np.ndarray
+    foot_wrench_admissible: np.ndarray
+    cop_desired: np.ndarray
+    cop_admissible: np.ndarray
+    failure: str | None
+    memory: Any
+
+
+class Controller(Protocol):
+    """A balance controller: a function of what it is given, with no state of its own."""
+
+    def initial_memory(self, dynamics: Dynamics) -> Any:
+        """What the first tick is given as memory."""
+        ...
+
+    def compute(
+        self, dynamics: Dynamics, reference: Reference, gains: Any, priority: float, memory: Any
+    ) -> ControlOutput:
+        """Torques for one tick.
+
+        Args:
+            dynamics: the state with everything computed.
+            reference: what the robot shall do.
+            gains: an instance of the controller's dataclass of gains.
+            priority: 0 keeps linear momentum, 1 keeps angular momentum, when the ground cannot give both.
+            memory: what the previous tick has returned.
+        """
+        ...

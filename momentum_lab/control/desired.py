@@ -1,0 +1,56 @@
+"""Which momentum rates balance asks for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+
+from momentum_lab.control.controller import Reference
+from momentum_lab.robot.state import Dynamics
+
+
+def desired_linear_rate(
+    mass: float, dynamics: Dynamics, reference: Reference, damping: float, stiffness: float
+) -> np.ndarray:
+    """The linear momentum rate that brings the CoM to its reference.
+
+    Eq. 38: dl_d/dt = m [Gamma_21 (dr_d - dr) + Gamma_22 (r_d - r)].
+
+    Args:
+        mass: total mass m, kg.
+        dynamics: the state with everything computed.
+        reference: holds r_d, m, and dr_d, m/s.
+        damping: Gamma_21, 1/s, the same in all directions.
+        stiffness: Gamma_22, 1/s^2, the same in all directions.
+
+    Returns:
+        The rate (3,), N.
+    """
+    return mass * (
+        damping * (reference.com_velocity - dynamics.com_velocity)
+        + stiffness * (reference.com - dynamics.com_in_world)
+    )
+
+
+def desired_angular_rate(
+    dynamics: Dynamics, reference: Reference, damping: float, pelvis_stiffness: float
+) -> np.ndarray:
+    """The angular momentum rate that damps angular momentum and brings the pelvis upright.
+
+    Eq. 37: dk_d/dt = Gamma_11 (k_d - k), and an extension that the chapter does not have: - K_theta I_G e_R
+    with e_R = log(R R_d^T). There is no angular position to feed back, so without that term the pelvis
+    drifts wherever the motion of the CoM turns it.
+
+    Args:
+        dynamics: the state with everything computed.
+        reference: holds k_d, N m s, and the desired pelvis axes R_d.
+        damping: Gamma_11, 1/s.
+        pelvis_stiffness: K_theta, 1/s^2; 0 gives the chapter's law.
+
+    Returns:
+        The rate (3,), N m.
+    """
+    tilt = pin.log3(dynamics.pelvis_rotation @ reference.pelvis_rotation.T)
+    return damping * (reference.angular_momentum - dynamics.momentum[3:]) - pelvis_stiffness * (
+        dynamics.locked_inertia @ tilt
+    )

@@ -1,0 +1,47 @@
+"""Torques for when there is no control law to follow."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from momentum_lab.control.controller import ControlOutput
+from momentum_lab.robot.model import RobotModel
+from momentum_lab.robot.state import Dynamics
+
+# A joint this far from its posture gets its full torque, rad.
+_FULL_TORQUE_ANGLE = 0.3
+# Ratio of damping to stiffness, s.
+_DAMPING_TIME = 0.05
+
+HOLD_IN_WORDS = "holding the posture with joint springs"
+
+
+def hold_posture(robot: RobotModel, dynamics: Dynamics, posture: np.ndarray) -> np.ndarray:
+    """Springs and dampers at the joints (na,), N m: the torque of a tick whose controller has no answer.
+
+    tau = k (theta_0 - theta) - d theta', with k the torque limit over 0.3 rad and d = 0.05 s k.
+    """
+    stiffness = robot.effort_limit / _FULL_TORQUE_ANGLE
+    state = dynamics.state
+    return stiffness * (posture - state.q[7:] - _DAMPING_TIME * state.v[6:])
+
+
+def limp(robot: RobotModel, dynamics: Dynamics, memory: Any) -> ControlOutput:
+    """The answer for a robot that has fallen: dampers at the joints, nothing asked of the ground.
+
+    tau = - d theta' with d as above.
+    """
+    nowhere = np.full(2, np.nan)
+    return ControlOutput(
+        torque=-_DAMPING_TIME * robot.effort_limit / _FULL_TORQUE_ANGLE * dynamics.state.v[6:],
+        acceleration=np.zeros(robot.nv),
+        momentum_rate_desired=np.zeros(6),
+        momentum_rate_admissible=np.zeros(6),
+        foot_wrench_admissible=np.zeros((len(robot.soles), 6)),
+        cop_desired=nowhere,
+        cop_admissible=nowhere,
+        failure=None,
+        memory=memory,
+    )

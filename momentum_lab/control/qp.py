@@ -1,0 +1,155 @@
+"""Quadratic programs: build, solve, certify. DAQP in the loop, Clarabel as the independent reference."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import daqp
+import numpy as np
+import qpsolvers
+
+from momentum_lab.errors import SolverError
+
+_EQUALITY = 5
+_UNBOUNDED = 1e30
+# An answer is accepted when every condition of optimality holds to this, relative to the problem's own size.
+_CERTIFIED = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class QuadraticProgram:
+    """min 1/2 x^T P x + c^T x subject to lower <= [x; G x] <= upper; equal bounds are equalities.
+
+    Attributes:
+        hessian: P (n, n), symmetric positive definite.
+        gradient: c (n,).
+        matrix: G (m, n); may have no rows.
+        lower: bounds of the n variables, then of the m rows (n + m,); -inf where there is none.
+        upper: likewise.
+        labels: what each bound means, for messages: (number of bounds, meaning) in their order.
+    """
+
+    hessian: np.ndarray
+    gradient: np.ndarray
+    matrix: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    labels: tuple[tuple[int, str], ...] = ()
+
+    def values(self, x: np.ndarray) -> np.ndarray:
+        """The bounded quantities [x; G x] (n + m,)."""
+        return np.concatenate([x, self.matrix @ x])
+
+    def label(self, index: int) -> str:
+        """What one bound means."""
+        for count, meaning in self.labels:
+            if index < count:
+                return meaning
+            index -= count
+        return f"bound {index}"
+
+
+@dataclass(frozen=True, slots=True)
+class Certificate:
+    """How well an answer meets the conditions of optimality (Karush, Kuhn, Tucker).
+
+    Attributes:
+        primal: largest violation of a bound, in the unit of that bound.
+        dual: largest entry of P x + c + multipliers, relative to the largest of its terms.
+    """
+
+    primal: float
+    dual: float
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """A certified minimiser.
+
+    Attributes:
+        x: the minimiser (n,).
+        multipliers: one per bound, positive at upper and negative at lower bounds (n + m,).
+        certificate: the residuals it was accepted with.
+    """
+
+    x: np.ndarray
+    multipliers: np.ndarray
+    certificate: Certificate
+
+
+def solve(problem: QuadraticProgram) -> Solution:
+    """The minimiser, found by DAQP's dual active set and judged by its residuals, not by the solver's word.
+
+    Raises:
+        SolverError: there is no point within all bounds (the message names the bound that stands in the way),
+            or the residuals are too large.
+    """
+    lower = np.maximum(problem.lower, -_UNBOUNDED)
+    upper = np.minimum(problem.upper, _UNBOUNDED)
+    sense = np.where(problem.lower == problem.upper, _EQUALITY, 0).astype(np.int32)
+    x, _, exit_flag, info = daqp.solve(problem.hessian, problem.gradient, problem.matrix, upper, lower, sense)
+    if exit_flag < 1:
+        raise SolverError(_what_stands_in_the_way(problem))
+    multipliers = info["lam"]
+    certificate = certify(problem, x, multipliers)
+    if max(certificate.primal, certificate.dual) > _CERTIFIED:
+        raise SolverError(
+            f"the solver's answer misses optimality by {certificate.primal:.1e} (bounds) and {certificate.dual:.1e}"
+        )
+    return Solution(x, multipliers, certificate)
+
+
+def certify(problem: QuadraticProgram, x: np.ndarray, multipliers: np.ndarray) -> Certificate:
+    """Residuals of the optimality conditions at x (n,) with multipliers (n + m,)."""
+    values = problem.values(x)
+    primal = max(float((values - problem.upper).max()), float((problem.lower - values).max()), 0.0)
+    size = x.size
+    curvature = problem.hessian @ x
+    pressure = multipliers[:size] + multipliers[size:] @ problem.matrix
+    scale = 1.0 + max(np.abs(curvature).max(), np.abs(problem.gradient).max())
+    dual = np.abs(curvature + problem.gradient + pressure).max() / scale
+    return Certificate(primal, float(dual))
+
+
+def solve_reference(problem: QuadraticProgram) -> np.ndarray:
+    """The minimiser (n,) by Clarabel's interior point method: slow, and independent of `solve`.
+
+    Raises:
+        SolverError: Clarabel finds no minimiser.
+    """
+    x = qpsolvers.solve_problem(_as_qpsolvers(problem), solver="clarabel").x
+    if x is None:
+        raise SolverError("Clarabel finds no minimiser")
+    return x
+
+
+def _as_qpsolvers(problem: QuadraticProgram) -> qpsolvers.Problem:
+    size = problem.gradient.size
+    every = np.vstack([np.eye(size), problem.matrix])
+    equal = problem.lower == problem.upper
+    above, below = ~equal & np.isfinite(problem.upper), ~equal & np.isfinite(problem.lower)
+    return qpsolvers.Problem(
+        problem.hessian,
+        problem.gradient,
+        G=np.vstack([every[above], -every[below]]),
+        h=np.concatenate([problem.upper[above], -problem.lower[below]]),
+        A=every[equal] if equal.any() else None,
+        b=problem.upper[equal] if equal.any() else None,
+    )
+
+
+def _what_stands_in_the_way(problem: QuadraticProgram) -> str:
+    """The bound that the point nearest to all bounds violates most, in words."""
+    size = problem.gradient.size
+    every = np.vstack([np.eye(size), problem.matrix])
+    rows = len(every)
+    relaxed = QuadraticProgram(
+        hessian=np.diag(np.concatenate([np.full(size, 1e-8), np.ones(rows)])),
+        gradient=np.zeros(size + rows),
+        matrix=np.hstack([every, np.eye(rows)]),
+        lower=np.concatenate([np.full(size + rows, -np.inf), problem.lower]),
+        upper=np.concatenate([np.full(size + rows, np.inf), problem.upper]),
+    )
+    violation = np.abs(solve_reference(relaxed)[size:])
+    worst = int(violation.argmax())
+    return f"cannot be met: {problem.label(worst)} (short by {violation[worst]:.3g})"

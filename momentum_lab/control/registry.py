@@ -1,0 +1,50 @@
+"""All controllers by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueGains
+from momentum_lab.control.controller import Controller
+from momentum_lab.errors import InputError
+from momentum_lab.robot.model import RobotModel
+
+
+@dataclass(frozen=True, slots=True)
+class ControllerEntry:
+    """One controller of the registry.
+
+    Attributes:
+        title: the name on the screen.
+        summary: what it is, in one sentence.
+        make: builds it for a robot and a timestep (s).
+        gains: its gains at their defaults.
+    """
+
+    title: str
+    summary: str
+    make: Callable[[RobotModel, float], Controller]
+    gains: Any
+
+
+CONTROLLERS: dict[str, ControllerEntry] = {
+    "computed-torque": ControllerEntry(
+        title="Computed torque",
+        summary="Admissible foot forces, then accelerations, then torques (sections 4.2 and 5.1).",
+        make=ComputedTorque,
+        gains=ComputedTorqueGains(),
+    ),
+}
+
+
+def controller_entry(name: str) -> ControllerEntry:
+    """The controller of that name.
+
+    Raises:
+        InputError: there is none.
+    """
+    if name not in CONTROLLERS:
+        raise InputError("controller", name, f"one of {', '.join(CONTROLLERS)}")
+    return CONTROLLERS[name]

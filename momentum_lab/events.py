@@ -1,0 +1,84 @@
+"""Everything a person, a lesson or a test can do to a running lab, as plain data.
+
+A session takes events at the start of a tick, in their order, and keeps a log of them: the scenario and the
+log together replay the run bit for bit.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+from momentum_lab.physics.push import Push
+
+
+class SetGain(msgspec.Struct, frozen=True, tag=True):
+    """Change one gain of the current controller."""
+
+    name: str
+    value: float
+
+
+class SetPriority(msgspec.Struct, frozen=True, tag=True):
+    """Change which momentum is kept: 0 linear, 1 angular."""
+
+    value: float
+
+
+class SelectController(msgspec.Struct, frozen=True, tag=True):
+    """Change the controller; its gains start at their defaults."""
+
+    name: str
+
+
+class ApplyPush(msgspec.Struct, frozen=True, tag=True):
+    """Push the robot now; the push's own start is ignored."""
+
+    push: Push
+
+
+class Reset(msgspec.Struct, frozen=True, tag=True):
+    """Stand the robot up again where it started and set the clock to zero; gains and priority stay."""
+
+
+class Play(msgspec.Struct, frozen=True, tag=True):
+    """Let simulated time run."""
+
+
+class Pause(msgspec.Struct, frozen=True, tag=True):
+    """Stop simulated time."""
+
+
+class StepOnce(msgspec.Struct, frozen=True, tag=True):
+    """Advance a paused simulation by some ticks."""
+
+    ticks: int = 1
+
+
+class SetSpeed(msgspec.Struct, frozen=True, tag=True):
+    """Run at this fraction of real time."""
+
+    value: float
+
+
+class SelectRobot(msgspec.Struct, frozen=True, tag=True):
+    """Start the scenario again with another robot."""
+
+    name: str
+
+
+class LoadScenario(msgspec.Struct, frozen=True, tag=True):
+    """Start another scenario."""
+
+    name: str
+
+
+SessionEvent = SetGain | SetPriority | SelectController | ApplyPush | Reset
+PlaybackEvent = Play | Pause | StepOnce | SetSpeed | SelectRobot | LoadScenario
+Event = SessionEvent | PlaybackEvent
+
+
+class LoggedEvent(msgspec.Struct, frozen=True):
+    """An event and the tick at whose start it was taken."""
+
+    tick: int
+    event: SessionEvent

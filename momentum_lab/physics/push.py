@@ -1,0 +1,150 @@
+"""Pushes: a force on a body, at a point, for a time. Never a jump of the velocity."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import msgspec
+import numpy as np
+import pinocchio as pin
+
+from momentum_lab.errors import InputError
+from momentum_lab.robot.model import RobotModel
+from momentum_lab.robot.state import Dynamics
+
+MAX_FORCE = 5000.0
+MAX_DURATION = 10.0
+MAX_HEIGHT = 3.0
+MAX_SPEED = 5.0
+
+Shape = Literal["rectangle", "half-sine"]
+_MEAN_OF_SHAPE = {"rectangle": 1.0, "half-sine": 2.0 / math.pi}
+
+
+class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A horizontal force on one body of the robot.
+
+    Its size is given either as a force or as the velocity that it gives to the CoM of the whole robot, which
+    means the same on robots of any mass.
+
+    Attributes:
+        force: peak force, N; None when the velocity change is given.
+        velocity_change: impulse divided by the robot's mass, m/s; None when the force is given.
+        duration: how long it lasts, s.
+        direction_deg: where it points: 0 forward (+x), 90 left (+y), degrees.
+        start: when it begins, s of simulated time.
+        height: height of its line of action above the ground, m; None: through the centre of mass.
+        body: name of the pushed body in the robot's file; None: the trunk.
+        shape: a rectangle in time, or a half sine.
+    """
+
+    force: Annotated[float, msgspec.Meta(ge=0.0, le=MAX_FORCE)] | None = None
+    velocity_change: Annotated[float, msgspec.Meta(ge=0.0, le=MAX_SPEED)] | None = None
+    duration: Annotated[float, msgspec.Meta(gt=0.0, le=MAX_DURATION)] = 0.1
+    direction_deg: Annotated[float, msgspec.Meta(ge=-360.0, le=360.0)] = 0.0
+    start: Annotated[float, msgspec.Meta(ge=0.0)] = 0.5
+    height: Annotated[float, msgspec.Meta(gt=0.0, le=MAX_HEIGHT)] | None = None
+    body: str | None = None
+    shape: Shape = "rectangle"
+
+    @property
+    def direction(self) -> np.ndarray:
+        """Unit vector of the force in the world (3,)."""
+        angle = math.radians(self.direction_deg)
+        return np.array([math.cos(angle), math.sin(angle), 0.0])
+
+    @property
+    def impulse(self) -> float:
+        """The whole push: integral of the force, N s. A push without a force has to be sized for a mass first."""
+        if self.force is None:
+            raise InputError("push", "no force", "a push that is sized for a robot")
+        return self.force * self.duration * _MEAN_OF_SHAPE[self.shape]
+
+    def sized_for(self, mass: float) -> Push:
+        """The same push with its force (N) for a robot of a mass (kg).
+
+        Raises:
+            InputError: neither or both of force and velocity change are given.
+        """
+        if (self.force is None) == (self.velocity_change is None):
+            given = f"force {self.force}, velocity_change {self.velocity_change}"
+            raise InputError("push", given, "either a force (N) or a velocity_change (m/s)")
+        if self.velocity_change is None:
+            return self
+        force = self.velocity_change * mass / (self.duration * _MEAN_OF_SHAPE[self.shape])
+        return msgspec.structs.replace(self, force=force, velocity_change=None)
+
+    def delivered(self, time: float) -> float:
+        """Impulse delivered from the start of the push until `time`, N s."""
+        elapsed = min(max(time - self.start, 0.0), self.duration)
+        if self.shape == "rectangle":
+            return self.impulse * elapsed / self.duration
+        return self.impulse * 0.5 * (1.0 - math.cos(math.pi * elapsed / self.duration))
+
+    def mean_force(self, time: float, timestep: float) -> float:
+        """Mean force over [time, time + timestep], N: the impulse is exact whatever the step."""
+        return (self.delivered(time + timestep) - self.delivered(time)) / timestep
+
+    def point_of_action(self, dynamics: Dynamics) -> np.ndarray:
+        """A point of the line of action in the world (3,), m: over the CoM at the push's height."""
+        point = dynamics.com_in_world.copy()
+        if self.height is not None:
+            point[2] = dynamics.sole_position[:, 2].min() + self.height
+        return point
+
+
+@dataclass(frozen=True, slots=True)
+class AppliedPush:
+    """What all pushes together do to the robot during one step.
+
+    Attributes:
+        wrench: force and moment about the world origin (6,), N and N m.
+        generalized: the same as generalized forces (nv,).
+    """
+
+    wrench: np.ndarray
+    generalized: np.ndarray
+
+
+def apply_pushes(
+    robot: RobotModel,
+    data: pin.Data,
+    dynamics: Dynamics,
+    pushes: tuple[Push, ...],
+    time: float,
+    timestep: float,
+) -> AppliedPush | None:
+    """Wrench and generalized forces of the pushes that act in [time, time + timestep]; None when none does.
+
+    tau = J_b^T w_b with the wrench w_b = (F, (c - o_b) x F) about the origin o_b of the pushed body.
+
+    Args:
+        robot: the robot.
+        data: Pinocchio data that may be overwritten.
+        dynamics: the robot's state with everything computed.
+        pushes: all pushes of the run.
+        time: start of the step, s.
+        timestep: length of the step, s.
+    """
+    active = [p for p in pushes if p.start < time + timestep and time < p.start + p.duration]
+    if not active:
+        return None
+    wrench, generalized = np.zeros(6), np.zeros(robot.nv)
+    for push in active:
+        force = push.mean_force(time, timestep) * push.direction
+        point = push.point_of_action(dynamics)
+        frame = pushed_frame(robot, push)
+        jacobian = pin.computeFrameJacobian(
+            robot.model, data, dynamics.state.q, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+        )
+        lever = point - data.oMf[frame].translation
+        wrench += np.concatenate([force, np.cross(point, force)])
+        generalized += jacobian.T @ np.concatenate([force, np.cross(lever, force)])
+    return AppliedPush(wrench, generalized)
+
+
+def pushed_frame(robot: RobotModel, push: Push) -> int:
+    """Index of the frame a push acts on."""
+    return robot.trunk if push.body is None else robot.frame(robot.spec.push_bodies[push.body])

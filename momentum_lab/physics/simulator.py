@@ -1,0 +1,171 @@
+"""From one state to the next: gravity, torques, pushes, joint limits and contact in one step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from momentum_lab.physics.contact import Contacts, solve_contact
+from momentum_lab.physics.ground import Ground
+from momentum_lab.physics.push import AppliedPush, Push, apply_pushes
+from momentum_lab.physics.touch import BodyPoints, Touch, sole_touches
+from momentum_lab.robot.model import RobotModel
+from momentum_lab.robot.state import Dynamics, State
+
+GRAVITY = 9.81
+# A joint that has passed its limit is brought back with this time constant, s.
+_LIMIT_TIME = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What happened during one step.
+
+    Attributes:
+        state: the state at its end.
+        torque: joint torques after the motors' limits (na,), N m.
+        foot_wrench: ground on each foot about the sole origin, world axes (F, 6), N and N m.
+        other_wrench: ground on everything that is not a sole, about the world origin (6,), N and N m.
+        push_wrench: pushes on the robot about the world origin (6,), N and N m.
+        momentum_rate: sum of all external wrenches about the CoM at the start of the step (6,), N and N m.
+    """
+
+    state: State
+    torque: np.ndarray
+    foot_wrench: np.ndarray
+    other_wrench: np.ndarray
+    push_wrench: np.ndarray
+    momentum_rate: np.ndarray
+
+
+class Simulator:
+    """The world of one robot.
+
+    Args:
+        robot: the robot.
+        ground: what it stands on.
+        timestep: length of a step, s.
+    """
+
+    def __init__(self, robot: RobotModel, ground: Ground, timestep: float) -> None:
+        self.robot = robot
+        self.ground = ground
+        self.timestep = timestep
+        self._bodies = BodyPoints(robot, timestep)
+        self._push_data = robot.model.createData()
+
+    def step(self, dynamics: Dynamics, torque: np.ndarray, pushes: tuple[Push, ...], time: float) -> Step:
+        """The step from `dynamics.state` at `time` under joint torques (na,) and the pushes of the run.
+
+        H (v+ - v) = dt (S tau + J_b^T w_push - C v - tau_g) + J_c^T lambda, q+ = q (+) dt v+ (semi-implicit).
+
+        Raises:
+            SimulationError: the state is not finite any more.
+        """
+        torque = np.clip(torque, -self.robot.effort_limit, self.robot.effort_limit)
+        push = apply_pushes(self.robot, self._push_data, dynamics, pushes, time, self.timestep)
+        mass_matrix, force = self._free_motion(dynamics, torque, push)
+        soles = sole_touches(self.robot, dynamics, self.ground)
+        bodies = self._bodies.touches(dynamics.state, self.ground.floor)
+        touching = [touch for touch in soles if touch is not None] + bodies
+        solution = solve_contact(
+            mass_matrix,
+            self.timestep * force,
+            dynamics.state.v,
+            _together(touching, self.robot.nv),
+            self.timestep,
+        )
+        q = self.robot.integrate(dynamics.state.q, self.timestep * solution.velocity)
+        state = State(q, solution.velocity)
+        self._bodies.follow(state)
+        forces = _forces_per_touch(touching, solution.impulse / self.timestep)
+        return self._account(dynamics, state, torque, push, soles, touching, forces)
+
+    def _free_motion(
+        self, dynamics: Dynamics, torque: np.ndarray, push: AppliedPush | None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Mass matrix (nv, nv) and force (nv,) of the robot without contact.
+
+        A joint beyond its limit gets a spring and a damper, critically damped and implicit in the step: with
+        k = H_jj / T^2 and d = 2 H_jj / T the joint moves as if it had the inertia H_jj + dt d + dt^2 k.
+        """
+        force = -dynamics.nonlinear_effects
+        force[6:] += torque
+        if push is not None:
+            force += push.generalized
+        angle = dynamics.state.q[7:]
+        excess = np.maximum(angle - self.robot.position_upper, 0.0) + np.minimum(
+            angle - self.robot.position_lower, 0.0
+        )
+        beyond = np.nonzero(excess)[0]
+        if not beyond.size:
+            return dynamics.mass_matrix, force
+        mass_matrix, rows, dt = dynamics.mass_matrix.copy(), beyond + 6, self.timestep
+        inertia = mass_matrix[rows, rows]
+        stiffness, damping = inertia / _LIMIT_TIME**2, 2.0 * inertia / _LIMIT_TIME
+        mass_matrix[rows, rows] += dt * damping + dt**2 * stiffness
+        force[rows] -= stiffness * excess[beyond] + (damping + dt * stiffness) * dynamics.state.v[rows]
+        return mass_matrix, force
+
+    def _account(
+        self,
+        dynamics: Dynamics,
+        state: State,
+        torque: np.ndarray,
+        push: AppliedPush | None,
+        soles: list[Touch | None],
+        touching: list[Touch],
+        forces: list[np.ndarray],
+    ) -> Step:
+        """Who pushed whom: wrenches per foot, of the other bodies, and their sum about the CoM (Eqs. 1, 2)."""
+        by_touch = {id(touch): force for touch, force in zip(touching, forces, strict=True)}
+        foot_wrench = np.zeros((len(soles), 6))
+        other_wrench = np.zeros(6)
+        rate = np.zeros(6)
+        rate[2] = -self.robot.mass * GRAVITY
+        for foot, touch in enumerate(soles):
+            if touch is not None:
+                force = by_touch.pop(id(touch))
+                foot_wrench[foot] = _wrench_about(dynamics.sole_position[foot], touch.position, force)
+                rate += _wrench_about(dynamics.com_in_world, touch.position, force)
+        for touch in touching:
+            if id(touch) in by_touch:
+                other_wrench += _wrench_about(np.zeros(3), touch.position, by_touch[id(touch)])
+        push_wrench = np.zeros(6) if push is None else push.wrench
+        rate += _moved_to(dynamics.com_in_world, other_wrench + push_wrench)
+        return Step(state, torque, foot_wrench, other_wrench, push_wrench, rate)
+
+
+def _together(touching: list[Touch], nv: int) -> Contacts:
+    if not touching:
+        return Contacts(np.zeros((0, nv)), np.zeros(0), ())
+    return Contacts(
+        jacobian=np.concatenate([touch.jacobian for touch in touching]),
+        gap=np.concatenate([touch.gap for touch in touching]),
+        friction=tuple(touch.patch.friction for touch in touching for _ in touch.gap),
+    )
+
+
+def _forces_per_touch(touching: list[Touch], forces: np.ndarray) -> list[np.ndarray]:
+    """Forces on the points of each touch in world axes (n, 3), N."""
+    found, first = [], 0
+    for touch in touching:
+        last = first + touch.gap.size
+        found.append(forces[first:last] @ touch.patch.rotation.T)
+        first = last
+    return found
+
+
+def _wrench_about(origin: np.ndarray, position: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Sum of forces (n, 3) at points (n, 3) about an origin (6,)."""
+    arm = position - origin
+    moment = arm[:, (1, 2, 0)] * force[:, (2, 0, 1)] - arm[:, (2, 0, 1)] * force[:, (1, 2, 0)]
+    return np.concatenate([force.sum(0), moment.sum(0)])
+
+
+def _moved_to(point: np.ndarray, wrench: np.ndarray) -> np.ndarray:
+    """A wrench about the world origin, about another point (6,)."""
+    moved = wrench.copy()
+    moved[3:] -= np.cross(point, wrench[:3])
+    return moved

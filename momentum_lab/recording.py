@@ -1,0 +1,202 @@
+"""What happened, tick by tick: a sample is one row of numbers with names, a recording is a ring of rows."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from momentum_lab.errors import InputError
+from momentum_lab.robot.model import RobotModel
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Which quantity stands where in a row.
+
+    Attributes:
+        shapes: name -> shape of the quantity in one sample.
+        joint_names: the actuated joints, in the order of torques.
+        foot_names: the feet, in the order of per-foot quantities.
+    """
+
+    shapes: dict[str, tuple[int, ...]]
+    joint_names: tuple[str, ...]
+    foot_names: tuple[str, ...]
+
+    @classmethod
+    def of(cls, robot: RobotModel) -> Layout:
+        """The layout for a robot: F feet, linear before angular, world axes, SI.
+
+        Wrenches of feet are about the sole frame's origin, ground on robot; the push and all other contacts
+        about the world origin; momentum and its rates about the CoM.
+        """
+        feet = len(robot.soles)
+        shapes: dict[str, tuple[int, ...]] = {
+            "time": (),
+            "q": (robot.nq,),
+            "v": (robot.nv,),
+            "torque": (robot.na,),
+            "com": (3,),
+            "com_velocity": (3,),
+            "momentum": (6,),
+            "momentum_rate_desired": (6,),
+            "momentum_rate_admissible": (6,),
+            "momentum_rate_measured": (6,),
+            "foot_wrench_measured": (feet, 6),
+            "foot_wrench_admissible": (feet, 6),
+            "sole_pose": (feet, 7),
+            "cop_measured": (2,),
+            "cop_admissible": (2,),
+            "cop_desired": (2,),
+            "cmp": (2,),
+            "capture_point": (2,),
+            "foot_cop_measured": (feet, 2),
+            "push_wrench": (6,),
+            "other_contact_wrench": (6,),
+            "priority": (),
+            "equation_residual": (),
+            "solver_failed": (),
+            "fallen": (),
+        }
+        return cls(shapes, robot.joint_names, robot.foot_names)
+
+    @property
+    def slices(self) -> dict[str, slice]:
+        """Name -> its part of a row."""
+        ends = np.cumsum([math.prod(shape) for shape in self.shapes.values()]).tolist()
+        return {name: slice(a, b) for name, a, b in zip(self.shapes, [0, *ends[:-1]], ends, strict=True)}
+
+    @property
+    def width(self) -> int:
+        """Numbers in a row."""
+        return sum(math.prod(shape) for shape in self.shapes.values())
+
+
+class Sample:
+    """One tick: the state at its time, and the torques and wrenches applied from there to the next."""
+
+    __slots__ = ("_layout", "_slices", "row")
+
+    def __init__(self, layout: Layout, slices: dict[str, slice], row: np.ndarray) -> None:
+        self._layout = layout
+        self._slices = slices
+        self.row = row
+
+    @classmethod
+    def of(cls, layout: Layout, row: np.ndarray) -> Sample:
+        """A row (width,) read with a layout."""
+        return cls(layout, layout.slices, row)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.row[self._slices[name]].reshape(self._layout.shapes[name])
+
+    def number(self, name: str) -> float:
+        """A quantity that is a single number."""
+        return float(self.row[self._slices[name].start])
+
+
+class Recording:
+    """The last samples of a run.
+
+    Args:
+        layout: what a sample holds.
+        capacity: how many samples are kept; the oldest give way.
+    """
+
+    def __init__(self, layout: Layout, capacity: int) -> None:
+        self.layout = layout
+        self.capacity = capacity
+        self.slices = layout.slices
+        self._rows = np.full((capacity, layout.width), np.nan)
+        self._count = 0
+
+    def __len__(self) -> int:
+        return min(self._count, self.capacity)
+
+    def next_row(self) -> np.ndarray:
+        """Room for one more sample (width,), to be filled at once."""
+        row = self._rows[self._count % self.capacity]
+        self._count += 1
+        return row
+
+    def rows(self, every: int = 1) -> np.ndarray:
+        """All rows that are kept, oldest first (n, width); of `every` rows only the first."""
+        if self._count <= self.capacity:
+            return self._rows[: self._count : every]
+        start = self._count % self.capacity
+        return np.concatenate([self._rows[start:], self._rows[:start]])[::every]
+
+    def column(self, name: str, every: int = 1) -> np.ndarray:
+        """One quantity over time, oldest first (n, *shape)."""
+        rows = self.rows(every)
+        return rows[:, self.slices[name]].reshape(len(rows), *self.layout.shapes[name])
+
+    @property
+    def latest(self) -> Sample:
+        """The last sample."""
+        if not self._count:
+            raise InputError("recording", "no samples", "a recording of at least one tick")
+        return Sample(self.layout, self.slices, self._rows[(self._count - 1) % self.capacity])
+
+    def clear(self) -> None:
+        """Forget all samples."""
+        self._count = 0
+
+
+@dataclass(frozen=True)
+class Trace:
+    """A recording that has been saved.
+
+    Attributes:
+        columns: name -> quantity over time (n, *shape).
+        joint_names: the actuated joints.
+        foot_names: the feet.
+        meta: versions, scenario, gains, seed, robot description.
+    """
+
+    columns: dict[str, np.ndarray]
+    joint_names: tuple[str, ...]
+    foot_names: tuple[str, ...]
+    meta: dict[str, Any]
+
+
+def save_trace(recording: Recording, meta: dict[str, Any], path: Path) -> None:
+    """Write a recording as .npz, whole or not at all.
+
+    Raises:
+        InputError: the file cannot be written there.
+    """
+    arrays = {name: recording.column(name) for name in recording.layout.shapes}
+    arrays["joint_names"] = np.array(recording.layout.joint_names)
+    arrays["foot_names"] = np.array(recording.layout.foot_names)
+    arrays["meta"] = np.array(json.dumps(meta))
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
+        with os.fdopen(handle, "wb") as file:
+            np.savez_compressed(file, **arrays)
+        Path(temporary).replace(path)
+    except OSError as error:
+        raise InputError("out", path, f"a file in a folder that can be written ({error.strerror})") from error
+
+
+def load_trace(path: Path) -> Trace:
+    """Read what `save_trace` has written.
+
+    Raises:
+        InputError: the file is not a recording.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        joint_names, foot_names = arrays.pop("joint_names"), arrays.pop("foot_names")
+        meta = json.loads(str(arrays.pop("meta")))
+    except (OSError, KeyError, ValueError) as error:
+        raise InputError("recording", path, f"a .npz file that this lab has written ({error})") from error
+    return Trace(arrays, tuple(joint_names.tolist()), tuple(foot_names.tolist()), meta)

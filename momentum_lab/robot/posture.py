@@ -1,0 +1,189 @@
+"""Standing postures by inverse kinematics; the only file that imports PlaCo."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+import placo
+
+from momentum_lab.errors import RobotError
+from momentum_lab.robot.model import RobotModel, Sole
+from momentum_lab.robot.urdf import read_urdf
+
+LIFT = 0.05
+"""Height of a lifted sole above its place on the ground, m."""
+
+MARGIN = 0.05
+"""Smallest distance of a leg joint's angle from its limits, rad."""
+
+# Each weight outweighs the next by far: what the robot can reach is reached, and what it cannot reach costs
+# the later goals first. A robot with stiff ankles leans its pelvis when it stands on one foot.
+_STANCE, _COM, _SWING, _HEIGHT, _UPRIGHT, _REST = 1e6, 1e6, 1e3, 1e2, 1.0, 1e-4
+# The step limit keeps the iteration from jumping between joint limits: no joint moves more than this, rad.
+_LARGEST_STEP = 0.2
+_STEPS, _STILL = 200, 1e-9
+_DISTANCE_ERROR, _ANGLE_ERROR, _LIFT_ERROR = 2e-5, 2e-5, 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class _Goal:
+    """Where everything should be, world axes."""
+
+    turn: np.ndarray
+    soles: dict[str, pin.SE3]
+    com: np.ndarray
+    pelvis: np.ndarray
+
+
+def standing_posture(robot: RobotModel, stance: Sequence[str] | None = None) -> np.ndarray:
+    """A configuration in which the robot stands on the given feet, facing along x.
+
+    Soles are level at x = 0 and y = +-foot_distance / 2: those of the stance at z = 0, the others `LIFT`
+    above. The CoM is above the mean of the stance soles' rectangle centres, the pelvis at its home height and
+    as upright as the joints allow, the upper body at its home angles.
+
+    Args:
+        robot: the robot.
+        stance: names of the feet to stand on; all of them unless given.
+
+    Returns:
+        q (nq,), m and rad, in Pinocchio's order; the same arguments give the same bits.
+
+    Raises:
+        RobotError: a foot is unknown, a home angle is outside its limits, or the posture is out of reach.
+    """
+    feet = tuple(robot.foot_names if stance is None else stance)
+    if not feet or not set(feet) <= set(robot.foot_names):
+        raise RobotError("stance", ", ".join(feet), f"one or more of {', '.join(robot.foot_names)}")
+    goal = _goal(robot, feet)
+    q = _solve(robot, feet, goal)
+    _verify(robot, feet, goal, q)
+    return q
+
+
+def home_angles(robot: RobotModel) -> np.ndarray:
+    """Joint angles (na,) that the robot's file asks for, rad; zero where it says nothing.
+
+    Raises:
+        RobotError: an angle is outside the joint's limits.
+    """
+    angles = np.zeros(robot.na)
+    for pattern, angle in robot.spec.home.joints.items():
+        angles[robot.matching_joints([pattern])] = angle
+    for i in np.flatnonzero((angles < robot.position_lower) | (angles > robot.position_upper)):
+        raise RobotError(
+            f"home.joints of {robot.spec.name}",
+            f"{robot.joint_names[i]} = {angles[i]:g}",
+            f"{robot.position_lower[i]:g} to {robot.position_upper[i]:g} rad",
+        )
+    return angles
+
+
+def _goal(robot: RobotModel, feet: Sequence[str]) -> _Goal:
+    """Targets of the stance; with all joints at zero the toes tell which way the robot faces."""
+    data = _kinematics(robot, pin.neutral(robot.model))
+    toes = data.oMf[robot.soles[0].frame].rotation[:, 0]
+    turn = pin.utils.rotate("z", -float(np.arctan2(toes[1], toes[0])))
+    soles = {}
+    for sole in robot.soles:
+        side = np.sign((turn @ data.oMf[sole.frame].translation)[1])
+        height = 0.0 if sole.name in feet else LIFT
+        place = np.array([0.0, 0.5 * side * robot.spec.home.foot_distance, height])
+        soles[sole.name] = pin.SE3(np.eye(3), place)
+    centres = [soles[sole.name].act(sole.corners.mean(axis=0)) for sole in robot.soles if sole.name in feet]
+    return _Goal(turn, soles, np.mean(centres, axis=0), turn @ data.oMf[robot.pelvis].rotation)
+
+
+def _solve(robot: RobotModel, feet: Sequence[str], goal: _Goal) -> np.ndarray:
+    body = placo.RobotWrapper(str(robot.urdf), placo.Flags.ignore_collisions, _bare_urdf(robot))
+    solver = placo.KinematicsSolver(body)
+    _start(robot, body, solver, goal.turn)
+    for sole in robot.soles:
+        position, rotation = (_STANCE, _STANCE) if sole.name in feet else (_SWING, _UPRIGHT)
+        task = solver.add_frame_task(_frame_name(robot, sole), goal.soles[sole.name].homogeneous)
+        task.configure(sole.name, "soft", position, rotation)
+    com = solver.add_com_task(goal.com)
+    com.mask.set_axises("xy")
+    com.configure("com", "soft", _COM)
+    height = solver.add_position_task(robot.spec.pelvis, np.array([0.0, 0.0, robot.spec.home.base_height]))
+    height.mask.set_axises("z")
+    height.configure("height", "soft", _HEIGHT)
+    solver.add_orientation_task(robot.spec.pelvis, goal.pelvis).configure("upright", "soft", _UPRIGHT)
+    solver.add_regularization_task(_REST)
+    for _ in range(_STEPS):
+        step = solver.solve(True)
+        body.update_kinematics()
+        if np.abs(step).max() < _STILL:
+            break
+    base = pin.SE3ToXYZQUAT(pin.SE3(body.get_T_world_fbase()))
+    return np.concatenate([base, [body.get_joint(name) for name in robot.joint_names]])
+
+
+def _start(
+    robot: RobotModel, body: placo.RobotWrapper, solver: placo.KinematicsSolver, turn: np.ndarray
+) -> None:
+    """Put PlaCo's robot into the home posture, hold its upper body there and set the limits of the rest."""
+    for i, (name, angle) in enumerate(zip(robot.joint_names, home_angles(robot), strict=True)):
+        body.set_joint(name, angle)
+        if i in robot.upper_body:
+            solver.mask_dof(name)
+        else:
+            body.set_joint_limits(name, robot.position_lower[i] + MARGIN, robot.position_upper[i] - MARGIN)
+    base = pin.SE3(turn, np.array([0.0, 0.0, robot.spec.home.base_height]))
+    body.set_T_world_fbase(base.homogeneous)
+    body.update_kinematics()
+    solver.enable_joint_limits(True)
+    solver.enable_velocity_limits(True)
+    body.set_velocity_limits(_LARGEST_STEP)
+    solver.dt = 1.0
+
+
+def _bare_urdf(robot: RobotModel) -> str:
+    """The URDF without its meshes, which PlaCo would look for, and with the sole frames it lacks."""
+    root = read_urdf(robot.urdf)
+    for link in root.findall("link"):
+        for shape in (*link.findall("visual"), *link.findall("collision")):
+            link.remove(shape)
+    for foot in robot.spec.feet.values():
+        if foot.parent is not None:
+            ET.SubElement(root, "link", name=foot.frame)
+            joint = ET.SubElement(root, "joint", name=f"{foot.frame}_weld", type="fixed")
+            ET.SubElement(joint, "parent", link=foot.parent)
+            ET.SubElement(joint, "child", link=foot.frame)
+            ET.SubElement(joint, "origin", xyz=" ".join(map(str, foot.offset)))
+    return ET.tostring(root, encoding="unicode")
+
+
+def _verify(robot: RobotModel, feet: Sequence[str], goal: _Goal, q: np.ndarray) -> None:
+    """Refuse a configuration that is not the posture asked for, in words."""
+    data = _kinematics(robot, q)
+    faults = []
+    for sole in robot.soles:
+        error = goal.soles[sole.name].actInv(data.oMf[sole.frame])
+        distance, angle = np.linalg.norm(error.translation), np.linalg.norm(pin.log3(error.rotation))
+        if distance > (_DISTANCE_ERROR if sole.name in feet else _LIFT_ERROR):
+            faults.append(f"{sole.name} sole {1e3 * distance:.2g} mm from its place")
+        if sole.name in feet and angle > _ANGLE_ERROR:
+            faults.append(f"{sole.name} sole {angle:.2g} rad from level")
+    sway = np.linalg.norm(pin.centerOfMass(robot.model, data, q)[:2] - goal.com[:2])
+    if sway > _DISTANCE_ERROR:
+        faults.append(f"centre of mass {1e3 * sway:.2g} mm from above the support's middle")
+    outside = (q[7:] < robot.position_lower) | (q[7:] > robot.position_upper)
+    faults += [f"{robot.joint_names[i]} outside its limits" for i in np.flatnonzero(outside)]
+    if faults:
+        allowed = "a home (foot_distance, base_height, joints) that the legs can reach"
+        raise RobotError(f"standing posture of {robot.spec.name}", "; ".join(faults), allowed)
+
+
+def _kinematics(robot: RobotModel, q: np.ndarray) -> pin.Data:
+    data = robot.model.createData()
+    pin.framesForwardKinematics(robot.model, data, q)
+    return data
+
+
+def _frame_name(robot: RobotModel, sole: Sole) -> str:
+    return robot.spec.feet[sole.name].frame

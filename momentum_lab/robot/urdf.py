@@ -1,0 +1,82 @@
+"""Where a robot's URDF lies, what it says as XML, and the Pinocchio model of it."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from importlib import metadata
+from pathlib import Path
+
+import pinocchio as pin
+
+from momentum_lab.errors import RobotError
+from momentum_lab.robot.catalog import RobotSpec
+
+_DATA = "example-robot-data"
+
+
+def robot_data_folder() -> Path:
+    """The folder `robots` of the installed example-robot-data distribution.
+
+    Raises:
+        RobotError: the distribution is not installed, or holds no robots.
+    """
+    try:
+        files = metadata.files(_DATA) or []
+    except metadata.PackageNotFoundError as error:
+        raise RobotError(_DATA, "not installed", f"pip install {_DATA}") from error
+    for file in files:
+        if _DATA in file.parts and "robots" in file.parts:
+            folder = Path(str(file.locate()))
+            return next(p for p in folder.parents if p.name == "robots" and p.parent.name == _DATA)
+    raise RobotError(_DATA, "an installation without robots", f"pip install {_DATA}")
+
+
+def urdf_path(spec: RobotSpec) -> Path:
+    """The URDF file of a robot, taken from the robot-data package unless its path is absolute.
+
+    Raises:
+        RobotError: there is no such file.
+    """
+    path = Path(spec.urdf)
+    path = path if path.is_absolute() else robot_data_folder() / spec.urdf
+    if not path.is_file():
+        raise RobotError(
+            f"urdf of {spec.name}", spec.urdf, "a file in the robot-data package, or an absolute path"
+        )
+    return path
+
+
+def read_urdf(path: Path) -> ET.Element:
+    """The root element of a URDF file.
+
+    Raises:
+        RobotError: the file is no XML, or its root is not a robot with links.
+    """
+    try:
+        root = ET.parse(path).getroot()
+    except (ET.ParseError, OSError, ValueError) as error:
+        raise RobotError("urdf", path, f"a URDF file in XML ({error})") from error
+    if root.tag != "robot" or root.find("link") is None:
+        raise RobotError("urdf", path, f"a URDF file whose root is <robot> with links, not <{root.tag}>")
+    return root
+
+
+def load_model(path: Path) -> pin.Model:
+    """The Pinocchio model of a URDF, a free-flyer at its root.
+
+    The XML is parsed beforehand because Pinocchio would write the parser's complaints to stderr.
+
+    Raises:
+        RobotError: the file is no URDF, or one of its joints turns without end or in more than one way.
+    """
+    read_urdf(path)
+    try:
+        model = pin.buildModelFromUrdf(str(path), pin.JointModelFreeFlyer())
+    except (ValueError, RuntimeError) as error:
+        raise RobotError("urdf", path, f"a URDF that Pinocchio can read ({error})") from error
+    odd = [model.names[j] for j in range(2, model.njoints) if model.nqs[j] != 1 or model.nvs[j] != 1]
+    if odd:
+        raise RobotError(
+            "urdf", path, f"joints with one limited angle or position each, not {', '.join(odd)}"
+        )
+    return model

@@ -1,0 +1,245 @@
+"""The conductor: events in, ticks on, samples out. The same scenario and events give the same bits."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+import numpy as np
+import pinocchio as pin
+
+from momentum_lab.control.controller import ControlOutput
+from momentum_lab.control.fallback import limp
+from momentum_lab.control.gains import with_gains
+from momentum_lab.control.registry import controller_entry
+from momentum_lab.control.standing import StandingGoal
+from momentum_lab.errors import InputError, ScenarioError, SimulationError
+from momentum_lab.events import (
+    ApplyPush,
+    LoggedEvent,
+    Reset,
+    SelectController,
+    SessionEvent,
+    SetGain,
+    SetPriority,
+)
+from momentum_lab.observe import Tick, observe
+from momentum_lab.physics.ground import Ground
+from momentum_lab.physics.push import Push
+from momentum_lab.physics.simulator import Simulator, Step
+from momentum_lab.recording import Layout, Recording, Sample
+from momentum_lab.robot.model import RobotModel
+from momentum_lab.robot.posture import standing_posture
+from momentum_lab.robot.state import Dynamics, State
+from momentum_lab.scenario import Scenario
+
+# A robot whose CoM is lower than this part of its standing height has fallen.
+_FALLEN_HEIGHT = 0.6
+
+
+@dataclass(frozen=True, slots=True)
+class Fall:
+    """When the robot fell, and why it counts as fallen.
+
+    Attributes:
+        time: simulated time, s.
+        reason: in words.
+    """
+
+    time: float
+    reason: str
+
+
+class Session:
+    """One robot, one controller, one clock.
+
+    Args:
+        scenario: what is decided before the run.
+        robot: the scenario's robot, if it is loaded already.
+        capacity: ticks that the recording keeps; None: as many as the scenario is long.
+
+    Raises:
+        InputError: the scenario names something that does not exist.
+    """
+
+    def __init__(
+        self, scenario: Scenario, robot: RobotModel | None = None, capacity: int | None = None
+    ) -> None:
+        self.scenario = scenario
+        self.robot = robot or RobotModel.named(scenario.robot)
+        self.stance = _stance(self.robot, scenario.stance)
+        self._start = _starting_state(self.robot, scenario)
+        home = self.robot.at(self._start)
+        self._standing_height = float(home.com_in_world[2])
+        self._goal = StandingGoal(self.robot, home, self.stance)
+        friction = self.robot.spec.friction if scenario.friction is None else scenario.friction
+        self._ground = Ground.level(len(self.robot.soles), friction)
+        self._scripted = tuple(self._checked_push(push) for push in scenario.pushes)
+        ticks = math.ceil(scenario.seconds / scenario.timestep - 1e-9)
+        self.recording = Recording(Layout.of(self.robot), capacity or ticks)
+        self.priority = scenario.priority
+        self.log: list[LoggedEvent] = []
+        self.ticks = 0
+        self._inbox: deque[SessionEvent] = deque()
+        self._select(scenario.controller)
+        self.gains = with_gains(self.gains, scenario.gains)
+        self._stand_up()
+
+    @property
+    def time(self) -> float:
+        """Simulated time since the robot stood up, s."""
+        return self._tick_of_run * self.scenario.timestep
+
+    @property
+    def dynamics(self) -> Dynamics:
+        """The present state with everything computed."""
+        return self.robot.at(self.state)
+
+    def post(self, event: SessionEvent) -> None:
+        """Put an event into the inbox; it takes effect at the start of the next tick.
+
+        Raises:
+            InputError: the event asks for something that does not exist or is out of range.
+        """
+        self._check(event)
+        self._inbox.append(event)
+
+    def tick(self) -> Sample:
+        """One step of control and physics.
+
+        Raises:
+            SimulationError: the state is not finite any more; the recording holds everything before.
+        """
+        self._drain_inbox()
+        dynamics = self.robot.at(self.state)
+        output = self._control(dynamics)
+        step = self._simulator.step(dynamics, output.torque, self.pushes, self.time)
+        sample = self._record(dynamics, output, step)
+        self._advance(dynamics, output, step)
+        return sample
+
+    def _drain_inbox(self) -> None:
+        while self._inbox:
+            event = self._inbox.popleft()
+            self.log.append(LoggedEvent(self.ticks, event))
+            self._apply(event)
+
+    def _control(self, dynamics: Dynamics) -> ControlOutput:
+        """The controller's answer; a robot that has fallen goes limp."""
+        if self.fall is not None:
+            return limp(self.robot, dynamics, self._memory)
+        reference = self._goal.reference(dynamics)
+        output = self._controller.compute(dynamics, reference, self.gains, self.priority, self._memory)
+        if output.failure is not None:
+            self.solver_failures += 1
+            self.last_failure = output.failure
+        return output
+
+    def _record(self, dynamics: Dynamics, output: ControlOutput, step: Step) -> Sample:
+        row = self.recording.next_row()
+        observe(
+            row,
+            self.recording.slices,
+            Tick(self.robot, self.time, self.scenario.timestep, dynamics, output, step),
+        )
+        row[self.recording.slices["priority"]] = self.priority
+        row[self.recording.slices["fallen"]] = self.fall is not None
+        return self.recording.latest
+
+    def _advance(self, dynamics: Dynamics, output: ControlOutput, step: Step) -> None:
+        self._memory = output.memory
+        self.fall = self.fall or self._fall(dynamics, step)
+        self.state = step.state
+        self.ticks += 1
+        self._tick_of_run += 1
+        if not step.state.is_finite():
+            raise SimulationError(f"the state is not finite after {self.time:.3f} s; the recording is kept")
+
+    def _fall(self, dynamics: Dynamics, step: Step) -> Fall | None:
+        """When and why the robot has fallen; None while it stands."""
+        if step.other_wrench.any():
+            return Fall(self.time, "something other than a sole touched the ground")
+        if dynamics.com_in_world[2] < _FALLEN_HEIGHT * self._standing_height:
+            return Fall(self.time, f"the CoM sank to {dynamics.com_in_world[2]:.2f} m")
+        return None
+
+    def _check(self, event: SessionEvent) -> None:
+        """Refuse what cannot be done, before it is in the inbox."""
+        match event:
+            case SetGain(name, value):
+                with_gains(self.gains, {name: value})
+            case SetPriority(value):
+                _checked_priority(value)
+            case SelectController(name):
+                controller_entry(name)
+            case ApplyPush(push):
+                self._checked_push(push)
+
+    def _apply(self, event: SessionEvent) -> None:
+        match event:
+            case SetGain(name, value):
+                self.gains = with_gains(self.gains, {name: value})
+            case SetPriority(value):
+                self.priority = _checked_priority(value)
+            case SelectController(name):
+                self._select(name)
+                self._memory = self._controller.initial_memory(self.dynamics)
+            case ApplyPush(push):
+                now = msgspec.structs.replace(self._checked_push(push), start=self.time)
+                self.pushes = (*self.pushes, now)
+            case Reset():
+                self._scripted = ()
+                self._stand_up()
+
+    def _select(self, name: str) -> None:
+        entry = controller_entry(name)
+        self.controller = name
+        self.gains: Any = entry.gains
+        self._controller = entry.make(self.robot, self.scenario.timestep)
+
+    def _stand_up(self) -> None:
+        """The robot where it started, the clock at zero."""
+        self.state = self._start
+        self.pushes = self._scripted
+        self.fall: Fall | None = None
+        self.solver_failures = 0
+        self.last_failure: str | None = None
+        self._tick_of_run = 0
+        self._simulator = Simulator(self.robot, self._ground, self.scenario.timestep)
+        self._memory = self._controller.initial_memory(self.dynamics)
+        self.recording.clear()
+
+    def _checked_push(self, push: Push) -> Push:
+        """The push with its force, if the robot has the body it names."""
+        if push.body is not None and push.body not in self.robot.spec.push_bodies:
+            raise InputError("body", push.body, f"one of {', '.join(self.robot.spec.push_bodies)}")
+        return push.sized_for(self.robot.mass)
+
+
+def _checked_priority(value: float) -> float:
+    if not math.isfinite(value) or not 0.0 <= value <= 1.0:
+        raise InputError(
+            "priority", value, "a number from 0 (keep linear momentum) to 1 (keep angular momentum)"
+        )
+    return float(value)
+
+
+def _stance(robot: RobotModel, names: tuple[str, ...]) -> tuple[int, ...]:
+    for name in names:
+        if name not in robot.foot_names:
+            raise ScenarioError("stance", name, f"feet among {', '.join(robot.foot_names)}")
+    return tuple(i for i, name in enumerate(robot.foot_names) if not names or name in names)
+
+
+def _starting_state(robot: RobotModel, scenario: Scenario) -> State:
+    """The standing posture, moved and turned to where the scenario starts."""
+    q = standing_posture(robot, scenario.stance or robot.foot_names).copy()
+    turn = pin.utils.rotate("z", math.radians(scenario.heading_deg))
+    rotation = turn @ pin.Quaternion(q[3:7]).toRotationMatrix()
+    q[:3] = turn @ q[:3]
+    q[:2] += scenario.position
+    q[3:7] = pin.Quaternion(rotation).normalized().coeffs()
+    return State(q, np.zeros(robot.nv))

@@ -1,0 +1,79 @@
+"""Robots, random states and comparisons shared by all tests."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+with warnings.catch_warnings():
+    # Pinocchio 3.8 itself imports its collision library under the old name.
+    warnings.filterwarnings("ignore", message=".*'hppfcl' imports.*", category=DeprecationWarning)
+    import pinocchio  # noqa: F401
+
+from momentum_lab.robot.model import RobotModel
+from momentum_lab.robot.state import Dynamics, State
+
+ROBOTS = ("talos", "g1")
+STATES_PER_ROBOT = 50
+
+
+@pytest.fixture(scope="session")
+def talos() -> RobotModel:
+    return RobotModel.named("talos")
+
+
+@pytest.fixture(scope="session")
+def g1() -> RobotModel:
+    return RobotModel.named("g1")
+
+
+@pytest.fixture(scope="session", params=ROBOTS)
+def robot(request: pytest.FixtureRequest) -> RobotModel:
+    """Each of the complete robots in turn."""
+    return request.getfixturevalue(request.param)
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """The same random numbers in every run of a test."""
+    return np.random.default_rng(20190517)
+
+
+@pytest.fixture(scope="session")
+def random_states(robot: RobotModel) -> list[State]:
+    """Postures within the joint limits, any orientation, bases within 1 m, speeds around 1."""
+    rng = np.random.default_rng(1)
+    return [random_state(robot, rng) for _ in range(STATES_PER_ROBOT)]
+
+
+@pytest.fixture(scope="session")
+def random_dynamics(robot: RobotModel, random_states: list[State]) -> list[Dynamics]:
+    """The dynamics of the random states."""
+    return [robot.at(state) for state in random_states]
+
+
+def random_state(robot: RobotModel, rng: np.random.Generator) -> State:
+    position = rng.uniform(-1.0, 1.0, 3)
+    quaternion = rng.normal(size=4)
+    joints = rng.uniform(robot.position_lower, robot.position_upper)
+    q = np.concatenate((position, quaternion / np.linalg.norm(quaternion), joints))
+    return State(q=q, v=rng.normal(size=robot.nv))
+
+
+def random_rotation(rng: np.random.Generator) -> np.ndarray:
+    """Any rotation (3, 3), from the QR decomposition of a random matrix."""
+    rotation, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    return rotation * np.sign(np.linalg.det(rotation))
+
+
+def yaw_rotation(angle: float) -> np.ndarray:
+    """Rotation about the vertical (3, 3)."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def assert_close(actual: object, expected: object, tolerance: float) -> None:
+    """Every number within an absolute tolerance; NaN equals nothing."""
+    np.testing.assert_allclose(actual, expected, rtol=0.0, atol=tolerance, equal_nan=False)
