@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -114,7 +114,8 @@ class Recording:
         self.layout = layout
         self.capacity = capacity
         self.slices = layout.slices
-        self._rows = np.full((capacity, layout.width), np.nan)
+        # Rows that are never written cost no memory.
+        self._rows = np.empty((capacity, layout.width))
         self._count = 0
 
     def __len__(self) -> int:
@@ -167,23 +168,42 @@ class Trace:
     meta: dict[str, Any]
 
 
+def writable_file(path: Path) -> Path:
+    """The path, if a file can be written there; nothing is left behind by the question.
+
+    Raises:
+        InputError: its folder does not exist or cannot be written, or something that is no file is there.
+    """
+    try:
+        if path.exists() and not path.is_file():
+            raise InputError("out", path, "the path of a file")
+        temporary = _beside(path)
+        temporary.touch(exist_ok=False)
+        temporary.unlink()
+    except OSError as error:
+        raise _not_writable(path, error) from error
+    return path
+
+
 def save_trace(recording: Recording, meta: dict[str, Any], path: Path) -> None:
-    """Write a recording as .npz, whole or not at all.
+    """Write a recording as .npz, whole or not at all, under exactly the given name.
 
     Raises:
         InputError: the file cannot be written there.
     """
-    arrays = {name: recording.column(name) for name in recording.layout.shapes}
+    arrays: dict[str, Any] = {name: recording.column(name) for name in recording.layout.shapes}
     arrays["joint_names"] = np.array(recording.layout.joint_names)
     arrays["foot_names"] = np.array(recording.layout.foot_names)
-    arrays["meta"] = np.array(json.dumps(meta))
+    arrays["meta"] = np.array(json.dumps(meta, allow_nan=False))
+    temporary = _beside(writable_file(path))
     try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
-        with os.fdopen(handle, "wb") as file:
+        with temporary.open("xb") as file:
             np.savez_compressed(file, **arrays)
-        Path(temporary).replace(path)
+        temporary.replace(path.resolve())
     except OSError as error:
-        raise InputError("out", path, f"a file in a folder that can be written ({error.strerror})") from error
+        raise _not_writable(path, error) from error
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 def load_trace(path: Path) -> Trace:
@@ -193,10 +213,19 @@ def load_trace(path: Path) -> Trace:
         InputError: the file is not a recording.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
         joint_names, foot_names = arrays.pop("joint_names"), arrays.pop("foot_names")
         meta = json.loads(str(arrays.pop("meta")))
-    except (OSError, KeyError, ValueError) as error:
+    except (OSError, KeyError, ValueError, TypeError, EOFError, BadZipFile) as error:
         raise InputError("recording", path, f"a .npz file that this lab has written ({error})") from error
     return Trace(arrays, tuple(joint_names.tolist()), tuple(foot_names.tolist()), meta)
+
+
+def _beside(path: Path) -> Path:
+    """A name that nothing has yet, in the folder of the file that a path leads to."""
+    return path.resolve().parent / f".{uuid4().hex}.part"
+
+
+def _not_writable(path: Path, error: OSError) -> InputError:
+    return InputError("out", path, f"a file in a folder that can be written ({error.strerror})")

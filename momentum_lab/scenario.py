@@ -3,18 +3,33 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 import msgspec
 
 from momentum_lab.errors import ScenarioError
 from momentum_lab.paths import ASSETS
-from momentum_lab.physics.push import Push
+from momentum_lab.physics.push import Push, Shape
 
 SCENARIO_FOLDER = ASSETS / "scenarios"
+MIN_SECONDS = 1e-3
 MAX_SECONDS = 3600.0
+MAX_SEED = 2**32 - 1
+MAX_DISTANCE = 1000.0
 ENGINES = ("pinocchio",)
+
+_WORDS = {
+    "float": "number",
+    "int": "whole number",
+    "str": "text",
+    "array": "list",
+    "object": "table",
+    "null": "nothing",
+}
+
+Coordinate = Annotated[float, msgspec.Meta(ge=-MAX_DISTANCE, le=MAX_DISTANCE)]
 
 
 class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -46,12 +61,12 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     priority: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.0
     gains: dict[str, float] = {}
     pushes: tuple[Push, ...] = ()
-    seconds: Annotated[float, msgspec.Meta(gt=0.0, le=MAX_SECONDS)] = 4.0
+    seconds: Annotated[float, msgspec.Meta(ge=MIN_SECONDS, le=MAX_SECONDS)] = 4.0
     friction: Annotated[float, msgspec.Meta(gt=0.0, le=2.0)] | None = None
-    position: tuple[float, float] = (0.0, 0.0)
+    position: tuple[Coordinate, Coordinate] = (0.0, 0.0)
     heading_deg: Annotated[float, msgspec.Meta(ge=-360.0, le=360.0)] = 0.0
     engine: Literal["pinocchio"] = "pinocchio"
-    seed: Annotated[int, msgspec.Meta(ge=0)] = 0
+    seed: Annotated[int, msgspec.Meta(ge=0, le=MAX_SEED)] = 0
     timestep: Annotated[float, msgspec.Meta(ge=1e-4, le=2e-3)] = 1e-3
 
 
@@ -67,14 +82,14 @@ def load_scenario(name: str) -> Scenario:
         ScenarioError: there is none, or the file cannot be read or is no scenario.
     """
     path = Path(name) if name.endswith(".toml") else SCENARIO_FOLDER / f"{name}.toml"
-    if not path.is_file():
-        raise ScenarioError(
-            "scenario", name, f"one of {', '.join(scenario_names())}, or the path of a .toml file"
-        )
     try:
-        return checked(msgspec.toml.decode(path.read_bytes(), type=Scenario))
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        data = msgspec.toml.decode(path.read_bytes())
+    except OSError as error:
+        allowed = f"one of {', '.join(scenario_names())}, or the path of a .toml file that can be read"
+        raise ScenarioError("scenario", name, allowed) from error
+    except (ValueError, RecursionError) as error:
         raise ScenarioError("scenario", path, f"a TOML file that describes a scenario ({error})") from error
+    return _converted(data, f" in {path}")
 
 
 def changed(scenario: Scenario, **changes: Any) -> Scenario:
@@ -83,14 +98,7 @@ def changed(scenario: Scenario, **changes: Any) -> Scenario:
     Raises:
         ScenarioError: a value is not allowed; the message names the field.
     """
-    data = {**msgspec.to_builtins(scenario), **msgspec.to_builtins(changes)}
-    try:
-        return checked(msgspec.convert(data, Scenario))
-    except msgspec.ValidationError as error:
-        message, _, where = str(error).partition(" - at ")
-        field = where.strip("`").removeprefix("$.") or "scenario"
-        given = data.get(field.split(".")[0].split("[")[0], data)
-        raise ScenarioError(field, given, message) from error
+    return _converted({**msgspec.to_builtins(scenario), **msgspec.to_builtins(changes)})
 
 
 def checked(scenario: Scenario) -> Scenario:
@@ -99,10 +107,44 @@ def checked(scenario: Scenario) -> Scenario:
     Raises:
         ScenarioError: one is not (comparisons with NaN let it pass every range).
     """
-    for field, value in _numbers(msgspec.to_builtins(scenario)):
-        if not math.isfinite(value):
-            raise ScenarioError(field, value, "a finite number")
+    _check_finite(msgspec.to_builtins(scenario))
     return scenario
+
+
+def _converted(data: dict[str, Any], where: str = "") -> Scenario:
+    """Plain data as a scenario, or an error that names the field and `where` it is."""
+    _check_finite(data, where)
+    try:
+        return msgspec.convert(data, Scenario)
+    except msgspec.ValidationError as error:
+        rule, _, place = str(error).partition(" - at ")
+        field = place.strip("`").removeprefix("$").removeprefix(".").removesuffix("[...]")
+        given, allowed = _explained(rule, field, data)
+        raise ScenarioError((field or "scenario") + where, given, allowed) from error
+
+
+def _explained(rule: str, field: str, data: Any) -> tuple[object, str]:
+    """What was given where a rule was broken, and what is allowed there, in words."""
+    given = data
+    for key in re.findall(r"\w+", field):
+        given = given[int(key)] if isinstance(given, list | tuple) else given[key]
+    if "unknown field" in rule:
+        fields = (Push if field.startswith("pushes") else Scenario).__struct_fields__
+        return rule.split("`")[1], f"the fields {', '.join(fields)}"
+    if "missing required field" in rule:
+        return "nothing", rule.removeprefix("Object missing required ").replace("`", "")
+    if "enum value" in rule:
+        return given, f"one of {', '.join(ENGINES if field == 'engine' else get_args(Shape))}"
+    allowed = rule.removeprefix("Expected ").partition(", got")[0].replace("`", "")
+    for plain, word in _WORDS.items():
+        allowed = allowed.replace(plain, word)
+    return given, allowed
+
+
+def _check_finite(data: Any, where: str = "") -> None:
+    for field, value in _numbers(data):
+        if not math.isfinite(value):
+            raise ScenarioError(field + where, value, "a finite number")
 
 
 def _numbers(value: Any, field: str = "") -> list[tuple[str, float]]:

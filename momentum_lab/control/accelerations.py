@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from momentum_lab.control.controller import Reference
+from momentum_lab.control.foot_forces import FootForces
 from momentum_lab.control.qp import QuadraticProgram, solve
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
@@ -37,61 +38,88 @@ class MotionWeights:
     joint_limit_rate: float
 
 
-def admissible_accelerations(
-    robot: RobotModel, dynamics: Dynamics, rate: np.ndarray, reference: Reference, weights: MotionWeights
-) -> np.ndarray:
-    """Generalized accelerations that give a momentum rate, keep the stance feet still and mind the posture.
-
-    min w_b |W (dh_a - A_G a - dA_G v)|^2 + (1 - w_b) (|theta''_d - theta''|^2 + w_p |omega'_d - omega'|^2)
-    subject to J_c a = dv_c - dJ_c v and theta''_l <= theta'' <= theta''_u (Eqs. 31, 32, 34, with squared norms;
-    the pelvis term is an extension). W = diag(1 / m, 1 / I) makes momentum rates into accelerations. Joints of
-    feet that do not carry follow the posture like the upper body.
+class AccelerationProgram:
+    """Eq. 34 for one robot on some of its feet; what does not change from tick to tick is built once.
 
     Args:
         robot: the robot.
-        dynamics: the state with everything computed.
-        rate: admissible momentum rate dh_a about the CoM (6,), N and N m.
-        reference: the posture, the pelvis axes and the stance feet.
-        weights: what matters how much.
-
-    Returns:
-        Accelerations a (nv,), m/s^2 and rad/s^2.
-
-    Raises:
-        SolverError: no acceleration keeps the feet still and the joints within their bounds.
+        stance: the feet that carry it, as indices.
     """
-    hessian, gradient = _momentum_objective(robot.mass, dynamics, rate, weights.momentum)
-    _add_posture(hessian, gradient, dynamics, reference, _free_joints(robot, reference.stance), weights)
-    _add_pelvis(hessian, gradient, dynamics, reference, weights)
-    hessian.flat[:: robot.nv + 1] += _RIDGE
-    matrix, target = contact_constraint(dynamics, reference, weights.contact_rate)
-    low, high = _joint_bounds(robot, dynamics, weights.joint_limit_rate)
-    unbounded = np.full(6, np.inf)
-    problem = QuadraticProgram(
-        hessian,
-        gradient,
-        matrix,
-        np.concatenate([-unbounded, low, target]),
-        np.concatenate([unbounded, high, target]),
-        _labels(robot, reference.stance),
-    )
-    return solve(problem).x
+
+    def __init__(self, robot: RobotModel, stance: tuple[int, ...]) -> None:
+        self.robot = robot
+        self.stance = stance
+        lifted = [sole.joints for foot, sole in enumerate(robot.soles) if foot not in stance]
+        self._posture_joints = np.concatenate([robot.upper_body, *lifted])
+        self._unbounded = np.full(6, np.inf)
+        bounds = 6 + robot.na + 6 * len(stance) + robot.na
+        self._soft = np.ones(bounds, dtype=bool)
+        self._soft[:6] = False
+        self._soft[6 + robot.na : 6 + robot.na + 6 * len(stance)] = False
+        self._labels = _labels(robot, stance)
+
+    def solve(
+        self, dynamics: Dynamics, feet: FootForces, reference: Reference, weights: MotionWeights
+    ) -> np.ndarray:
+        """Generalized accelerations that give a momentum rate, keep the feet still and mind the posture.
+
+        min w_b |W (dh_a - A_G a - dA_G v)|^2 + (1 - w_b) (|theta''_d - theta''|^2 + w_p |omega'_d - omega'|^2)
+        subject to J_c a = dv_c - dJ_c v and theta''_l <= theta'' <= theta''_u (Eqs. 31, 32, 34, with squared
+        norms). W = diag(1 / m, 1 / I) makes momentum rates into accelerations. Joints of feet that do not
+        carry follow the posture like the upper body.
+
+        Two extensions: the pelvis term, and torque limits. The foot forces are known by now, so torques are
+        linear in a, and |H_s a + C_s v + tau_g,s - J_c,s^T f_c| <= tau_max keeps the motors from being asked
+        for what they cannot give. Bounds of joints and torques yield where nothing else is possible; the
+        contact does not.
+
+        Args:
+            dynamics: the state with everything computed.
+            feet: admissible wrenches of the feet and the momentum rate dh_a they cause.
+            reference: the posture, the pelvis axes and the height of the ground.
+            weights: what matters how much.
+
+        Returns:
+            Accelerations a (nv,), m/s^2 and rad/s^2.
+
+        Raises:
+            SolverError: no acceleration keeps the feet still.
+        """
+        hessian, gradient = _momentum_objective(
+            self.robot.mass, dynamics, feet.momentum_rate, weights.momentum
+        )
+        _add_posture(hessian, gradient, dynamics, reference, self._posture_joints, weights)
+        _add_pelvis(hessian, gradient, dynamics, reference, weights)
+        hessian.flat[:: self.robot.nv + 1] += _RIDGE
+        still, target = contact_constraint(dynamics, self.stance, reference, weights.contact_rate)
+        low, high = _joint_bounds(self.robot, dynamics, weights.joint_limit_rate)
+        torque_rows, torque_offset = _torque_ratio(self.robot, dynamics, feet.wrench, self.stance)
+        problem = QuadraticProgram(
+            hessian,
+            gradient,
+            np.concatenate([still, torque_rows]),
+            np.concatenate([-self._unbounded, low, target, -1.0 - torque_offset]),
+            np.concatenate([self._unbounded, high, target, 1.0 - torque_offset]),
+            self._labels,
+            self._soft,
+        )
+        return solve(problem).x
 
 
 def contact_constraint(
-    dynamics: Dynamics, reference: Reference, contact_rate: float
+    dynamics: Dynamics, stance: tuple[int, ...], reference: Reference, contact_rate: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Rows J_c (6 S, nv) and values dv_c - dJ_c v (6 S,) that keep S stance feet still, flat and on the ground.
 
     Eq. 31 with dv_c = -2 kappa J_c v - kappa^2 e. The error e holds height and tilt only: a foot that has
     slipped stays where it is.
     """
-    stance = list(reference.stance)
-    jacobian = dynamics.sole_jacobian[stance]
-    target = -2.0 * contact_rate * (jacobian @ dynamics.state.v) - dynamics.sole_bias[stance]
+    feet = list(stance)
+    jacobian = dynamics.sole_jacobian[feet]
+    target = -2.0 * contact_rate * (jacobian @ dynamics.state.v) - dynamics.sole_bias[feet]
     pull = contact_rate**2
-    target[:, 2] -= pull * (dynamics.sole_position[stance, 2] - reference.sole_height[stance])
-    normal = dynamics.sole_rotation[stance, :, 2]
+    target[:, 2] -= pull * (dynamics.sole_position[feet, 2] - reference.sole_height[feet])
+    normal = dynamics.sole_rotation[feet, :, 2]
     target[:, 3] += pull * normal[:, 1]
     target[:, 4] -= pull * normal[:, 0]
     return jacobian.reshape(-1, jacobian.shape[2]), target.ravel()
@@ -147,13 +175,18 @@ def _joint_bounds(robot: RobotModel, dynamics: Dynamics, rate: float) -> tuple[n
     return low, high
 
 
-def _free_joints(robot: RobotModel, stance: tuple[int, ...]) -> np.ndarray:
-    """Joints of the upper body and of feet that do not carry, among the actuated joints."""
-    lifted = [sole.joints for foot, sole in enumerate(robot.soles) if foot not in stance]
-    return np.concatenate([robot.upper_body, *lifted])
+def _torque_ratio(
+    robot: RobotModel, dynamics: Dynamics, wrench: np.ndarray, stance: tuple[int, ...]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Rows (na, nv) and offset (na,) of the joint torques as parts of their limits (Eq. 33)."""
+    offset = dynamics.nonlinear_effects[6:].copy()
+    for foot in stance:
+        offset -= wrench[foot] @ dynamics.sole_jacobian[foot, :, 6:]
+    return dynamics.mass_matrix[6:] / robot.effort_limit[:, None], offset / robot.effort_limit
 
 
 def _labels(robot: RobotModel, stance: tuple[int, ...]) -> tuple[tuple[int, str], ...]:
     joints = ((1, f"limit of joint {name}") for name in robot.joint_names)
     feet = ((6, f"contact of the {robot.foot_names[foot]} foot") for foot in stance)
-    return ((6, "free base"), *joints, *feet)
+    torques = ((1, f"torque limit of {name}") for name in robot.joint_names)
+    return ((6, "free base"), *joints, *feet, *torques)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from momentum_lab.control.accelerations import MotionWeights, admissible_accelerations
+from momentum_lab.control.accelerations import AccelerationProgram, MotionWeights
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_angular_rate, desired_linear_rate
 from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture
@@ -44,10 +44,10 @@ class ComputedTorqueGains:
         0.99, "1", 0.5, 0.9999, "w_b: momentum against posture where both cannot be met (Eq. 34)."
     )
     posture_stiffness: float = gain(
-        25.0, "1/s^2", 0.0, 400.0, "How strongly the upper body is pulled to its posture (Eq. 34)."
+        100.0, "1/s^2", 0.0, 400.0, "How strongly the upper body is pulled to its posture (Eq. 34)."
     )
     posture_damping: float = gain(
-        10.0, "1/s", 0.0, 60.0, "How strongly the motion of the upper body is braked (Eq. 34)."
+        20.0, "1/s", 0.0, 60.0, "How strongly the motion of the upper body is braked (Eq. 34)."
     )
     pelvis_weight: float = gain(
         1.0,
@@ -64,7 +64,7 @@ class ComputedTorqueGains:
     )
     friction: float = gain(0.6, "1", 0.05, 1.5, "Friction coefficient the controller counts on.")
     least_foot_force: float = gain(
-        0.02, "1", 0.0, 0.2, "Part of the weight that every stance foot keeps carrying."
+        0.02, "1", 0.005, 0.2, "Part of the weight that every stance foot keeps carrying."
     )
     joint_limit_rate: float = gain(
         25.0, "1/s", 5.0, 100.0, "How late a joint may brake before its limit: larger is later (Eq. 34)."
@@ -110,6 +110,7 @@ class ComputedTorque:
         self.robot = robot
         self.timestep = timestep
         self.footing = Footing(robot)
+        self._programs: dict[tuple[int, ...], AccelerationProgram] = {}
 
     def initial_memory(self, dynamics: Dynamics) -> JointCommand:
         """The joints as they are."""
@@ -128,9 +129,8 @@ class ComputedTorque:
         balance = self._balance(dynamics, desired, reference.stance, gains, priority)
         try:
             feet = self._foot_forces(dynamics, balance, reference.stance, gains)
-            acceleration = admissible_accelerations(
-                self.robot, dynamics, feet.momentum_rate, reference, _weights(gains)
-            )
+            program = self._acceleration_program(reference.stance)
+            acceleration = program.solve(dynamics, feet, reference, _weights(gains))
         except SolverError as error:
             return self._fallback(dynamics, reference, desired, balance, error)
         torque = self._inverse_dynamics(dynamics, acceleration, feet.wrench, reference.stance)
@@ -174,6 +174,12 @@ class ComputedTorque:
         )
         feet = self.footing.stance_feet(dynamics, stance, gains.safe_border)
         return self.footing.share(feet, balance.force, balance.angular_rate, bounds)
+
+    def _acceleration_program(self, stance: tuple[int, ...]) -> AccelerationProgram:
+        """Step 2 for the feet that carry."""
+        if stance not in self._programs:
+            self._programs[stance] = AccelerationProgram(self.robot, stance)
+        return self._programs[stance]
 
     def _inverse_dynamics(
         self, dynamics: Dynamics, acceleration: np.ndarray, wrench: np.ndarray, stance: tuple[int, ...]

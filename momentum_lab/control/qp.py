@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import daqp
 import numpy as np
 import qpsolvers
+from scipy.sparse import csc_matrix
 
 from momentum_lab.errors import SolverError
 
 _EQUALITY = 5
+_SOFT = 8
 _UNBOUNDED = 1e30
 # An answer is accepted when every condition of optimality holds to this, relative to the problem's own size.
 _CERTIFIED = 1e-6
@@ -27,6 +29,7 @@ class QuadraticProgram:
         lower: bounds of the n variables, then of the m rows (n + m,); -inf where there is none.
         upper: likewise.
         labels: what each bound means, for messages: (number of bounds, meaning) in their order.
+        soft: which bounds yield, at a price, where not all can be met (n + m,); None: none.
     """
 
     hessian: np.ndarray
@@ -35,6 +38,7 @@ class QuadraticProgram:
     lower: np.ndarray
     upper: np.ndarray
     labels: tuple[tuple[int, str], ...] = ()
+    soft: np.ndarray | None = None
 
     def values(self, x: np.ndarray) -> np.ndarray:
         """The bounded quantities [x; G x] (n + m,)."""
@@ -54,7 +58,7 @@ class Certificate:
     """How well an answer meets the conditions of optimality (Karush, Kuhn, Tucker).
 
     Attributes:
-        primal: largest violation of a bound, in the unit of that bound.
+        primal: largest violation of a bound that does not yield, in the unit of that bound.
         dual: largest entry of P x + c + multipliers, relative to the largest of its terms.
     """
 
@@ -87,6 +91,8 @@ def solve(problem: QuadraticProgram) -> Solution:
     lower = np.maximum(problem.lower, -_UNBOUNDED)
     upper = np.minimum(problem.upper, _UNBOUNDED)
     sense = np.where(problem.lower == problem.upper, _EQUALITY, 0).astype(np.int32)
+    if problem.soft is not None:
+        sense[problem.soft] = _SOFT
     x, _, exit_flag, info = daqp.solve(problem.hessian, problem.gradient, problem.matrix, upper, lower, sense)
     if exit_flag < 1:
         raise SolverError(_what_stands_in_the_way(problem))
@@ -102,7 +108,10 @@ def solve(problem: QuadraticProgram) -> Solution:
 def certify(problem: QuadraticProgram, x: np.ndarray, multipliers: np.ndarray) -> Certificate:
     """Residuals of the optimality conditions at x (n,) with multipliers (n + m,)."""
     values = problem.values(x)
-    primal = max(float((values - problem.upper).max()), float((problem.lower - values).max()), 0.0)
+    violation = np.maximum(values - problem.upper, problem.lower - values)
+    if problem.soft is not None:
+        violation = violation[~problem.soft]
+    primal = max(float(violation.max()), 0.0)
     size = x.size
     curvature = problem.hessian @ x
     pressure = multipliers[:size] + multipliers[size:] @ problem.matrix
@@ -113,6 +122,8 @@ def certify(problem: QuadraticProgram, x: np.ndarray, multipliers: np.ndarray) -
 
 def solve_reference(problem: QuadraticProgram) -> np.ndarray:
     """The minimiser (n,) by Clarabel's interior point method: slow, and independent of `solve`.
+
+    Bounds that yield for `solve` are firm here.
 
     Raises:
         SolverError: Clarabel finds no minimiser.
@@ -129,27 +140,30 @@ def _as_qpsolvers(problem: QuadraticProgram) -> qpsolvers.Problem:
     equal = problem.lower == problem.upper
     above, below = ~equal & np.isfinite(problem.upper), ~equal & np.isfinite(problem.lower)
     return qpsolvers.Problem(
-        problem.hessian,
+        csc_matrix(problem.hessian),
         problem.gradient,
-        G=np.vstack([every[above], -every[below]]),
+        G=csc_matrix(np.vstack([every[above], -every[below]])),
         h=np.concatenate([problem.upper[above], -problem.lower[below]]),
-        A=every[equal] if equal.any() else None,
+        A=csc_matrix(every[equal]) if equal.any() else None,
         b=problem.upper[equal] if equal.any() else None,
     )
 
 
 def _what_stands_in_the_way(problem: QuadraticProgram) -> str:
-    """The bound that the point nearest to all bounds violates most, in words."""
+    """The bound that the point nearest to all bounds violates most, in words; bounds that yield are no reason."""
     size = problem.gradient.size
     every = np.vstack([np.eye(size), problem.matrix])
     rows = len(every)
+    price = np.ones(rows) if problem.soft is None else np.where(problem.soft, 1e-4, 1.0)
     relaxed = QuadraticProgram(
-        hessian=np.diag(np.concatenate([np.full(size, 1e-8), np.ones(rows)])),
+        hessian=np.diag(np.concatenate([np.full(size, 1e-8), price])),
         gradient=np.zeros(size + rows),
         matrix=np.hstack([every, np.eye(rows)]),
         lower=np.concatenate([np.full(size + rows, -np.inf), problem.lower]),
         upper=np.concatenate([np.full(size + rows, np.inf), problem.upper]),
     )
     violation = np.abs(solve_reference(relaxed)[size:])
+    if problem.soft is not None:
+        violation[problem.soft] = 0.0
     worst = int(violation.argmax())
     return f"cannot be met: {problem.label(worst)} (short by {violation[worst]:.3g})"

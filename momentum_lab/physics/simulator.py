@@ -16,6 +16,8 @@ from momentum_lab.robot.state import Dynamics, State
 GRAVITY = 9.81
 # A joint that has passed its limit is brought back with this time constant, s.
 _LIMIT_TIME = 0.01
+# No motor presses its joint further than this beyond the limit, rad.
+_LIMIT_GIVES_WAY = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +89,10 @@ class Simulator:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Mass matrix (nv, nv) and force (nv,) of the robot without contact.
 
-        A joint beyond its limit gets a spring and a damper, critically damped and implicit in the step: with
-        k = H_jj / T^2 and d = 2 H_jj / T the joint moves as if it had the inertia H_jj + dt d + dt^2 k.
+        A joint beyond its limit gets a spring and a damper, implicit in the step: with k = I / T^2, d = 2 I / T
+        and I the larger of H_jj and what makes the spring as strong as the motor at 0.02 rad, the joint moves
+        as if it had the inertia H_jj + dt d + dt^2 k. H_jj alone would be the inertia of a light foot under
+        the weight of the whole robot.
         """
         force = -dynamics.nonlinear_effects
         force[6:] += torque
@@ -102,7 +106,8 @@ class Simulator:
         if not beyond.size:
             return dynamics.mass_matrix, force
         mass_matrix, rows, dt = dynamics.mass_matrix.copy(), beyond + 6, self.timestep
-        inertia = mass_matrix[rows, rows]
+        as_strong = self.robot.effort_limit[beyond] * _LIMIT_TIME**2 / _LIMIT_GIVES_WAY
+        inertia = np.maximum(mass_matrix[rows, rows], as_strong)
         stiffness, damping = inertia / _LIMIT_TIME**2, 2.0 * inertia / _LIMIT_TIME
         mass_matrix[rows, rows] += dt * damping + dt**2 * stiffness
         force[rows] -= stiffness * excess[beyond] + (damping + dt * stiffness) * dynamics.state.v[rows]

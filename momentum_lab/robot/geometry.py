@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import fast_simplification
 import numpy as np
 import pinocchio as pin
 import trimesh
@@ -24,10 +23,11 @@ from momentum_lab.robot.urdf import read_urdf
 
 Color = tuple[float, float, float]
 
-# The simplifier stops where a collapse would cost more than about 3.3 of its length units: 4 mm in these.
-_UNITS_PER_METRE = 800.0
+# The simplifier stops where a collapse would cost more than about 3.3 of its length units: 4.5 mm in these.
+_UNITS_PER_METRE = 720.0
 _AGGRESSIVENESS = 5
-_FEW = 100
+_FEW = 400
+_LOOSE = 0.25
 _CREASE = np.radians(40.0)
 _GREY: Color = (0.7, 0.7, 0.7)
 _Y_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]], dtype=float)
@@ -51,7 +51,7 @@ class LinkMesh:
 
 
 def visual_meshes(robot: RobotModel) -> tuple[LinkMesh, ...]:
-    """The robot's visual geometry, one mesh per joint and colour, simplified to a tolerance of 4 mm.
+    """The robot's visual geometry, one mesh per joint and colour, simplified to about 5 mm.
 
     A mesh file's own colours win over the URDF's, because a URDF has one colour for the whole file. Vertices
     are shared only across smooth edges, so that smooth shading keeps sharp edges sharp.
@@ -80,29 +80,28 @@ def visual_meshes(robot: RobotModel) -> tuple[LinkMesh, ...]:
 
 
 def _link_mesh(joint: int, color: Color, shapes: list[trimesh.Trimesh]) -> LinkMesh:
-    mesh = trimesh.graph.smooth_shade(
-        _simplified(trimesh.util.concatenate(shapes)), _CREASE, facet_minarea=None
-    )
-    return LinkMesh(joint, mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32), color)
+    simple = _simplified(trimesh.util.concatenate(shapes))
+    mesh = trimesh.graph.smooth_shade(simple, _CREASE, facet_minarea=None)
+    return LinkMesh(joint, np.array(mesh.vertices, np.float32), np.array(mesh.faces, np.uint32), color)
 
 
 def _simplified(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
-    """The mesh without the triangles that its shape does not need; small meshes keep all of theirs."""
-    if len(mesh.faces) <= _FEW:
+    """The mesh without the triangles that its shape does not need.
+
+    Small meshes stay as they are, and so do loose panels, which the simplifier eats away from their rims.
+    """
+    if len(mesh.faces) <= _FEW or np.mean(np.bincount(mesh.edges_unique_inverse) == 1) > _LOOSE:
         return mesh
-    vertices, faces = fast_simplification.simplify(
-        np.asarray(mesh.vertices) * _UNITS_PER_METRE,
-        np.asarray(mesh.faces),
-        target_count=_FEW,
-        agg=_AGGRESSIVENESS,
-    )
-    return trimesh.Trimesh(vertices / _UNITS_PER_METRE, faces, process=False)
+    scaled = mesh.copy().apply_scale(_UNITS_PER_METRE)
+    simple = scaled.simplify_quadric_decimation(face_count=_FEW, aggression=_AGGRESSIVENESS)
+    return simple.apply_scale(1.0 / _UNITS_PER_METRE)
 
 
 def _shapes(visual: ET.Element, urdf: Path) -> Iterator[tuple[trimesh.Trimesh, Color | None]]:
     """Triangles of one visual element in its own frame, with the colour that a mesh file gives them."""
-    geometry = visual.find("geometry")
-    shape = geometry[0] if geometry is not None and len(geometry) else ET.Element("nothing")
+    shape = visual.find("geometry/*")
+    if shape is None:
+        return
     if shape.tag == "mesh":
         yield from _file_shapes(shape, urdf)
     elif shape.tag == "box":
@@ -111,22 +110,30 @@ def _shapes(visual: ET.Element, urdf: Path) -> Iterator[tuple[trimesh.Trimesh, C
         radius, length = float(shape.get("radius", 0)), float(shape.get("length", 0))
         yield trimesh.creation.cylinder(radius, length, sections=24), None
     elif shape.tag == "sphere":
-        yield trimesh.creation.icosphere(2, float(shape.get("radius", 0))), None
+        yield trimesh.creation.icosphere(3, float(shape.get("radius", 0))), None
+    else:
+        raise RobotError(f"shape in {urdf.name}", shape.tag, "mesh, box, cylinder or sphere")
 
 
 def _file_shapes(shape: ET.Element, urdf: Path) -> Iterator[tuple[trimesh.Trimesh, Color | None]]:
     path = _mesh_path(shape.get("filename", ""), urdf)
     scale = np.diag([*_numbers(shape.get("scale", "1 1 1")), 1.0])
-    try:
-        scene = trimesh.load_scene(path)
-    except Exception as error:  # each mesh format raises its own kinds
-        raise RobotError("mesh", path, f"a readable mesh file ({error})") from error
     collada = path.suffix.lower() == ".dae"
     upright = _Y_UP if collada and re.search(rb"<up_axis>\s*Y_UP", path.read_bytes()) else np.eye(4)
-    for part in scene.dump():
+    for part in _read_mesh_file(path):
         mesh = trimesh.Trimesh(part.vertices, part.faces)  # joins the vertices that only normals kept apart
         mesh.apply_transform(scale @ upright)
         yield mesh, _material_color(part) if collada else None
+
+
+def _read_mesh_file(path: Path) -> list[trimesh.Trimesh]:
+    try:
+        parts = [part for part in trimesh.load_scene(path).dump() if isinstance(part, trimesh.Trimesh)]
+    except Exception as error:  # each mesh format raises its own kinds
+        raise RobotError("mesh", path, f"a readable mesh file ({error})") from error
+    if not parts:
+        raise RobotError("mesh", path, "a readable mesh file (this one has no triangles)")
+    return parts
 
 
 def _mesh_path(filename: str, urdf: Path) -> Path:
@@ -136,7 +143,8 @@ def _mesh_path(filename: str, urdf: Path) -> Path:
     for folder in folders:
         if (folder / rest).is_file():
             return folder / rest
-    raise RobotError(f"mesh in {urdf.name}", filename, f"a file that exists below {folders[-1]}")
+    where = f"{urdf.parent} or a folder above it" if scheme == "package" else f"{urdf.parent}"
+    raise RobotError(f"mesh in {urdf.name}", filename, f"a file that exists in {where}")
 
 
 def _material_color(mesh: trimesh.Trimesh) -> Color | None:

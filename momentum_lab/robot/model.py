@@ -165,7 +165,7 @@ class RobotModel:
 
     def _sole(self, name: str, foot: FootSpec) -> Sole:
         if foot.parent is not None:
-            _add_frame(self.model, foot, self.frame(foot.parent))
+            _add_frame(self.model, name, foot, self.frame(foot.parent))
         (rear, front), (right, left) = foot.x, foot.y
         corners = np.array([[rear, right, 0.0], [front, right, 0.0], [front, left, 0.0], [rear, left, 0.0]])
         return Sole(
@@ -178,7 +178,11 @@ class RobotModel:
         )
 
 
-def _add_frame(model: pin.Model, foot: FootSpec, parent: int) -> None:
+def _add_frame(model: pin.Model, name: str, foot: FootSpec, parent: int) -> None:
+    if model.existFrame(foot.frame):
+        raise RobotError(
+            f"feet.{name}.frame", foot.frame, "a new name, or no parent: the URDF has this frame"
+        )
     link = model.frames[parent]
     placement = link.placement * pin.SE3(np.eye(3), np.array(foot.offset))
     model.addFrame(pin.Frame(foot.frame, link.parentJoint, parent, placement, pin.FrameType.OP_FRAME))

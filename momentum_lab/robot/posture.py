@@ -11,7 +11,7 @@ import pinocchio as pin
 import placo
 
 from momentum_lab.errors import RobotError
-from momentum_lab.robot.model import RobotModel, Sole
+from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.urdf import read_urdf
 
 LIFT = 0.05
@@ -27,6 +27,7 @@ _STANCE, _COM, _SWING, _HEIGHT, _UPRIGHT, _REST = 1e6, 1e6, 1e3, 1e2, 1.0, 1e-4
 _LARGEST_STEP = 0.2
 _STEPS, _STILL = 200, 1e-9
 _DISTANCE_ERROR, _ANGLE_ERROR, _LIFT_ERROR = 2e-5, 2e-5, 0.02
+_REACHABLE = "a home (foot_distance, base_height, joints) that the legs can reach"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,16 +66,14 @@ def standing_posture(robot: RobotModel, stance: Sequence[str] | None = None) -> 
     return q
 
 
-def home_angles(robot: RobotModel) -> np.ndarray:
-    """Joint angles (na,) that the robot's file asks for, rad; zero where it says nothing.
-
-    Raises:
-        RobotError: an angle is outside the joint's limits.
-    """
+def _home_angles(robot: RobotModel) -> np.ndarray:
+    """Joint angles (na,) that the robot's file asks for, rad; zero where it says nothing."""
     angles = np.zeros(robot.na)
     for pattern, angle in robot.spec.home.joints.items():
         angles[robot.matching_joints([pattern])] = angle
-    for i in np.flatnonzero((angles < robot.position_lower) | (angles > robot.position_upper)):
+    outside = np.flatnonzero((angles < robot.position_lower) | (angles > robot.position_upper))
+    if outside.size:
+        i = outside[0]
         raise RobotError(
             f"home.joints of {robot.spec.name}",
             f"{robot.joint_names[i]} = {angles[i]:g}",
@@ -104,7 +103,7 @@ def _solve(robot: RobotModel, feet: Sequence[str], goal: _Goal) -> np.ndarray:
     _start(robot, body, solver, goal.turn)
     for sole in robot.soles:
         position, rotation = (_STANCE, _STANCE) if sole.name in feet else (_SWING, _UPRIGHT)
-        task = solver.add_frame_task(_frame_name(robot, sole), goal.soles[sole.name].homogeneous)
+        task = solver.add_frame_task(robot.spec.feet[sole.name].frame, goal.soles[sole.name].homogeneous)
         task.configure(sole.name, "soft", position, rotation)
     com = solver.add_com_task(goal.com)
     com.mask.set_axises("xy")
@@ -114,20 +113,27 @@ def _solve(robot: RobotModel, feet: Sequence[str], goal: _Goal) -> np.ndarray:
     height.configure("height", "soft", _HEIGHT)
     solver.add_orientation_task(robot.spec.pelvis, goal.pelvis).configure("upright", "soft", _UPRIGHT)
     solver.add_regularization_task(_REST)
+    try:
+        _iterate(body, solver)
+    except RuntimeError as error:
+        raise RobotError(f"standing posture of {robot.spec.name}", error, _REACHABLE) from error
+    base = pin.SE3ToXYZQUAT(pin.SE3(body.get_T_world_fbase()))
+    return np.concatenate([base, [body.get_joint(name) for name in robot.joint_names]])
+
+
+def _iterate(body: placo.RobotWrapper, solver: placo.KinematicsSolver) -> None:
     for _ in range(_STEPS):
         step = solver.solve(True)
         body.update_kinematics()
         if np.abs(step).max() < _STILL:
-            break
-    base = pin.SE3ToXYZQUAT(pin.SE3(body.get_T_world_fbase()))
-    return np.concatenate([base, [body.get_joint(name) for name in robot.joint_names]])
+            return
 
 
 def _start(
     robot: RobotModel, body: placo.RobotWrapper, solver: placo.KinematicsSolver, turn: np.ndarray
 ) -> None:
     """Put PlaCo's robot into the home posture, hold its upper body there and set the limits of the rest."""
-    for i, (name, angle) in enumerate(zip(robot.joint_names, home_angles(robot), strict=True)):
+    for i, (name, angle) in enumerate(zip(robot.joint_names, _home_angles(robot), strict=True)):
         body.set_joint(name, angle)
         if i in robot.upper_body:
             solver.mask_dof(name)
@@ -166,24 +172,19 @@ def _verify(robot: RobotModel, feet: Sequence[str], goal: _Goal, q: np.ndarray) 
         error = goal.soles[sole.name].actInv(data.oMf[sole.frame])
         distance, angle = np.linalg.norm(error.translation), np.linalg.norm(pin.log3(error.rotation))
         if distance > (_DISTANCE_ERROR if sole.name in feet else _LIFT_ERROR):
-            faults.append(f"{sole.name} sole {1e3 * distance:.2g} mm from its place")
+            faults.append(f"{sole.name} sole {1e3 * distance:.2f} mm from its place")
         if sole.name in feet and angle > _ANGLE_ERROR:
-            faults.append(f"{sole.name} sole {angle:.2g} rad from level")
+            faults.append(f"{sole.name} sole {angle:.4f} rad from level")
     sway = np.linalg.norm(pin.centerOfMass(robot.model, data, q)[:2] - goal.com[:2])
     if sway > _DISTANCE_ERROR:
-        faults.append(f"centre of mass {1e3 * sway:.2g} mm from above the support's middle")
+        faults.append(f"centre of mass {1e3 * sway:.2f} mm from above the support's middle")
     outside = (q[7:] < robot.position_lower) | (q[7:] > robot.position_upper)
     faults += [f"{robot.joint_names[i]} outside its limits" for i in np.flatnonzero(outside)]
     if faults:
-        allowed = "a home (foot_distance, base_height, joints) that the legs can reach"
-        raise RobotError(f"standing posture of {robot.spec.name}", "; ".join(faults), allowed)
+        raise RobotError(f"standing posture of {robot.spec.name}", "; ".join(faults), _REACHABLE)
 
 
 def _kinematics(robot: RobotModel, q: np.ndarray) -> pin.Data:
     data = robot.model.createData()
     pin.framesForwardKinematics(robot.model, data, q)
     return data
-
-
-def _frame_name(robot: RobotModel, sole: Sole) -> str:
-    return robot.spec.feet[sole.name].frame

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 import pytest
+from scipy.linalg import block_diag
 
 from momentum_lab.momentum.centroidal import (
     LinkMomenta,
@@ -60,13 +61,10 @@ def test_link_velocities(links, kinematics):
 
 
 def test_system_jacobian(robot, random_states, links, kinematics):
-    """Eqs. 5 to 7: columns from Pinocchio's joint Jacobians, product from the recursion."""
+    """Eqs. 5 to 7: rows from Pinocchio's joint Jacobians, product from the recursion."""
     for state, link, data in zip(random_states, links, kinematics, strict=True):
-        columns = [
-            pin.getJointJacobian(robot.model, data, i, pin.ReferenceFrame.LOCAL)
-            for i in range(1, robot.model.njoints)
-        ]
-        assert_close(link.system_jacobian, np.vstack(columns), 1e-11)
+        rows = [pin.getJointJacobian(robot.model, data, i, pin.LOCAL) for i in range(1, robot.model.njoints)]
+        assert_close(link.system_jacobian, np.vstack(rows), 1e-11)
         assert_close(link.system_jacobian @ state.v, link.velocities.ravel(), 1e-11)
 
 
@@ -83,10 +81,8 @@ def test_link_inertias_in_the_chapters_order(robot, links):
 def test_link_momenta(links):
     """Eqs. 8 and 11."""
     for link in links:
-        stacked = np.zeros((link.inertias.shape[0] * 6,) * 2)
-        for i, inertia in enumerate(link.inertias):
-            stacked[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = inertia
-        assert_close(link.momenta.ravel(), stacked @ link.velocities.ravel(), 1e-11)
+        system_inertia = block_diag(*link.inertias)
+        assert_close(link.momenta.ravel(), system_inertia @ link.velocities.ravel(), 1e-11)
 
 
 def test_momentum_by_elementary_mechanics(robot, links, kinematics):
@@ -121,7 +117,7 @@ def test_centre_of_mass(robot, random_states, random_dynamics, links):
 
 
 def test_centroidal_map_by_both_roads(random_dynamics, links):
-    """Eq. 19 against Pinocchio's A_G."""
+    """Eqs. 16 to 19 against Pinocchio's A_G."""
     for dynamics, link in zip(random_dynamics, links, strict=True):
         assert_close(link.centroidal_map, dynamics.centroidal_map, 1e-11)
 

@@ -25,6 +25,7 @@ OMEGA = np.sqrt(9.81 / HEIGHT)
 def test_frequency_is_that_of_a_falling_pendulum():
     assert pendulum_frequency(9.81) == pytest.approx(1.0, abs=1e-15)
     assert pendulum_frequency(HEIGHT) == pytest.approx(OMEGA, abs=1e-12)
+    assert pendulum_frequency(9.81e-4) == pytest.approx(100.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("height", [0.0, -0.1, float("nan")])

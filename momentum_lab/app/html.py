@@ -1,0 +1,94 @@
+"""Small pieces of HTML for the panels. Viser shows HTML as it is, so every text is escaped here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from html import escape
+
+from momentum_lab.app.marks import STYLES, MarkStyle
+
+COLORS = {"green": "#007a59", "orange": "#b35c00", "vermillion": "#c43d00", "black": "#222222"}
+_SIGNS = {"standing": "●", "border": "▲", "lifted": "▲", "solver": "■", "fallen": "✖", "stopped": "■"}
+
+# The browser's own tab gets the lab's name; viser has no setting for it.
+TITLE = (
+    '<img alt="" src="data:," style="display:none" onerror="document.title=\'Momentum lab\'">'
+    # Playing controls and the big button are what a hand looks for first.
+    "<style>div:has(>.lab-big)+* button{height:3.1em!important;font-size:1.15em!important}"
+    ".lab{padding:0 .75em .5em .75em;font-size:.875em;line-height:1.4}"
+    ".lab b{font-weight:600}.lab .n{font-variant-numeric:tabular-nums}"
+    ".lab .dim{color:#6b6b6b}</style>"
+)
+BIG_NEXT = '<span class="lab-big"></span>'
+
+
+def status_line(kind: str, words: str, color: str) -> str:
+    """The status: a sign, a colour and words."""
+    css = COLORS[color]
+    return (
+        f'<div class="lab" data-status="{escape(kind)}" style="padding-top:.5em">'
+        f'<div style="border-left:.35em solid {css};padding:.15em 0 .15em .6em;min-height:2.8em">'
+        f'<span style="font-size:1.25em;font-weight:600;color:{css}">{_SIGNS[kind]} {escape(words)}</span>'
+        "</div></div>"
+    )
+
+
+def time_line(time: float, real_time_factor: float, speed: float, playing: bool) -> str:
+    """Simulated time and how it runs, in figures that do not change their width."""
+    if not playing:
+        pace = "paused"
+    else:
+        asked = "" if speed == 1.0 else f" (asked for {speed:g})"
+        pace = f"{real_time_factor:.2f} × real time{asked}"
+    return f'<div class="lab n dim">simulated time <b>{time:.2f} s</b> · {pace}</div>'
+
+
+def sentence(words: str) -> str:
+    """A sentence in a panel."""
+    return f'<div class="lab">{escape(words)}</div>'
+
+
+def changes(lines: Iterable[str]) -> str:
+    """What differs from the defaults, one line each."""
+    found = "".join(f"<li>{escape(line)}</li>" for line in lines)
+    if not found:
+        return '<div class="lab dim">All gains are at their defaults.</div>'
+    return f'<div class="lab">Changed:<ul class="n" style="margin:0;padding-left:1.2em">{found}</ul></div>'
+
+
+def legend(keys: Iterable[str], explained: bool) -> str:
+    """Symbol and name of some marks, with what they mean if asked for."""
+    items = []
+    for key in keys:
+        style = STYLES[key]
+        meaning = f' <span class="dim">{escape(style.help)}</span>' if explained else ""
+        name = escape(style.label)
+        items.append(
+            f'<span style="display:{"flex" if explained else "inline-flex"};align-items:center;gap:.35em;'
+            f'margin:.1em .8em .1em 0">{symbol(style)}<span><b>{name}</b>{meaning}</span></span>'
+        )
+    return f'<div class="lab" style="padding-top:.4em">{"".join(items)}</div>'
+
+
+def symbol(style: MarkStyle) -> str:
+    """The shape of a mark as a small drawing."""
+    body = _DRAWINGS[style.shape].replace("COLOR", style.css)
+    return f'<svg width="18" height="14" viewBox="-9 -7 18 14" style="flex:none">{body}</svg>'
+
+
+_DRAWINGS = {
+    "ball": '<circle r="5.5" fill="COLOR"/>',
+    "ring": '<circle r="4.5" fill="none" stroke="COLOR" stroke-width="2"/>',
+    "disc": '<ellipse rx="4" ry="2.5" fill="COLOR"/>',
+    "diamond": '<path d="M0-6 5 0 0 6-5 0Z" fill="COLOR"/>',
+    "triangle": '<path d="M0-6 6 5H-6Z" fill="COLOR"/>',
+    "cross": '<path d="M-5 0H5M0-5V5" stroke="COLOR" stroke-width="3"/>',
+    "square": '<rect x="-5" y="-5" width="10" height="10" fill="COLOR"/>',
+    "hollow square": '<rect x="-5" y="-5" width="10" height="10" fill="none" stroke="COLOR" stroke-width="2"/>',
+    "arrow": '<path d="M0 6V-2" stroke="COLOR" stroke-width="2.5"/><path d="M0-7 4-1H-4Z" fill="COLOR"/>',
+    "thin arrow": '<path d="M0 6V-3" stroke="COLOR" stroke-width="1.2"/><path d="M0-7 2.5-2H-2.5Z" fill="COLOR"/>',
+    "line": '<path d="M-6 5 6-5" stroke="COLOR" stroke-width="1.5"/>',
+    "bar": '<path d="M-8 0H8" stroke="COLOR" stroke-width="5"/>',
+    "area": '<path d="M-8 4-5-5H8L6 4Z" fill="COLOR" fill-opacity=".3"/>',
+    "dashes": '<path d="M-8 0H8" stroke="COLOR" stroke-width="2" stroke-dasharray="3 2"/>',
+}

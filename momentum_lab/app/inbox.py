@@ -1,0 +1,68 @@
+"""What a client may ask for: every value is checked here before it goes to a session."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+
+import msgspec
+
+from momentum_lab.errors import InputError
+from momentum_lab.events import ApplyPush, Event, LoadScenario, SelectRobot, SetSpeed, StepOnce
+from momentum_lab.physics.push import Push
+
+SLOWEST = 1.0 / 8.0
+MOST_TICKS = 1000
+_MOST_LETTERS = 200
+
+
+def checked_event(event: Event, robots: Collection[str], scenarios: Collection[str]) -> Event:
+    """The event, if its numbers are finite and its playback values are within range.
+
+    Gains, priority, bodies and controllers are checked by the session, which knows its own.
+
+    Args:
+        event: what a client asks for.
+        robots: the robots that may be chosen.
+        scenarios: the scenarios that may be chosen.
+
+    Raises:
+        InputError: a value is not allowed; the message names it.
+    """
+    _check_plain(event)
+    match event:
+        case StepOnce(ticks) if not 1 <= ticks <= MOST_TICKS:
+            raise InputError("step", ticks, f"1 to {MOST_TICKS} ticks")
+        case SetSpeed(value) if not SLOWEST <= value <= 1.0:
+            raise InputError("speed", value, f"{SLOWEST:g} to 1")
+        case SelectRobot(name) if name not in robots:
+            raise InputError("robot", name, f"one of {', '.join(robots)}")
+        case LoadScenario(name) if name not in scenarios:
+            raise InputError("scenario", name, f"one of {', '.join(scenarios)}")
+        case ApplyPush(push):
+            return ApplyPush(_checked_push(push))
+    return event
+
+
+def _check_plain(event: Event) -> None:
+    """Refuse what is not a finite number, or too long for a name."""
+    for field, value in _leaves(msgspec.to_builtins(event), ""):
+        if isinstance(value, float) and not math.isfinite(value):
+            raise InputError(field, value, "a finite number")
+        if isinstance(value, str) and len(value) > _MOST_LETTERS:
+            raise InputError(field, f"{value[:20]}...", f"at most {_MOST_LETTERS} letters")
+
+
+def _checked_push(push: Push) -> Push:
+    try:
+        return msgspec.convert(msgspec.to_builtins(push), Push)
+    except msgspec.ValidationError as error:
+        message, _, where = str(error).partition(" - at ")
+        field = where.strip("`").removeprefix("$.") or "push"
+        raise InputError(field, getattr(push, field, push), message) from error
+
+
+def _leaves(value: object, field: str) -> list[tuple[str, object]]:
+    if isinstance(value, dict):
+        return [leaf for key, inner in value.items() for leaf in _leaves(inner, str(key))]
+    return [(field, value)]

@@ -1,0 +1,55 @@
+"""Keys and commands. Space and arrows stay with the widgets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import viser
+
+from momentum_lab.app.push_panel import PushPanel
+from momentum_lab.app.status_bar import LARGE_STEP, SMALL_STEP, StatusBar
+from momentum_lab.app.tabs import Tabs
+from momentum_lab.app.widgets import Post
+from momentum_lab.events import Reset, StepOnce
+
+_HELP = """
+**P** push &nbsp;·&nbsp; **K** play or pause &nbsp;·&nbsp; **J** step 1 ms &nbsp;·&nbsp; **L** step 20 ms
+&nbsp;·&nbsp; **R** stand up again &nbsp;·&nbsp; **1 2 3** tabs &nbsp;·&nbsp; **H** this help
+
+The robot stands on its own; you push it. The controller moves the **CoP** (◆) under the feet to bring the
+**CoM** (●) back. Where the safe border of the feet stops the CoP, the ground cannot give both goals: either the
+body turns (linear momentum is kept) or the CoM gives way (angular momentum is kept). The *priority* slider of the
+Control tab decides.
+
+The line from the CoM to the **CMP** (▲) is parallel to the ground reaction force. The bar from CoP to CMP is the
+lever with which that force turns the body: the longer it is, the faster angular momentum changes.
+
+Drag to turn the picture, right-drag to move it, scroll to come closer.
+"""
+
+
+def add_keys(client: viser.ClientHandle, post: Post, push: PushPanel, status: StatusBar, tabs: Tabs) -> None:
+    """Give a browser tab its keys; all of them are in the command palette too."""
+    keys: tuple[tuple[str, Any, Callable[[], None]], ...] = (
+        ("Push", "P", push.apply),
+        ("Repeat the last push", None, push.apply_again),
+        ("Play or pause", "K", status.toggle),
+        ("Step 1 ms", "J", lambda: post(StepOnce(SMALL_STEP))),
+        ("Step 20 ms", "L", lambda: post(StepOnce(LARGE_STEP))),
+        ("Stand up again", "R", lambda: post(Reset())),
+        ("Push tab", "1", lambda: tabs.open(0)),
+        ("Control tab", "2", lambda: tabs.open(1)),
+        ("View tab", "3", lambda: tabs.open(2)),
+        ("Help", "H", lambda: _show_help(client)),
+    )
+    for label, hotkey, act in keys:
+        client.gui.add_command(label, hotkey=hotkey).on_trigger(lambda _, act=act: act())
+
+
+def _show_help(client: viser.ClientHandle) -> None:
+    modal = client.gui.add_modal("How this lab works")
+    with modal:
+        client.gui.add_markdown(_HELP)
+        close = client.gui.add_button("Close")
+    close.on_click(lambda _: modal.close())

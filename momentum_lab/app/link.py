@@ -1,0 +1,79 @@
+"""The server's end of a worker: starts the process, hands events in and frames out, and lets it go."""
+
+from __future__ import annotations
+
+import multiprocessing
+import threading
+from collections.abc import Collection, Iterator
+from multiprocessing import forkserver
+
+import msgspec
+
+from momentum_lab.app import worker
+from momentum_lab.app.inbox import checked_event
+from momentum_lab.app.wire import Frame, FrameTaken, packed, unpacked_frame
+from momentum_lab.events import Event
+from momentum_lab.scenario import Scenario
+
+# How long a worker may take to notice that its pipe is closed, s.
+_PATIENCE = 5.0
+
+
+def warm_up() -> None:
+    """Start the process that workers are forked from: it has no threads and has loaded everything once."""
+    multiprocessing.set_forkserver_preload([worker.__name__])
+    forkserver.ensure_running()
+
+
+class Link:
+    """A worker with its own session.
+
+    Args:
+        scenario: what the session starts with.
+        robots: the robots that may be chosen.
+        scenarios: the scenarios that may be chosen.
+    """
+
+    def __init__(self, scenario: Scenario, robots: Collection[str], scenarios: Collection[str]) -> None:
+        context = multiprocessing.get_context("forkserver")
+        self._robots, self._scenarios = robots, scenarios
+        self._connection, theirs = context.Pipe()
+        self._sending = threading.Lock()
+        arguments = (theirs, msgspec.json.encode(scenario))
+        self.process = context.Process(target=worker.main, args=arguments, daemon=True, name="session")
+        self.process.start()
+        theirs.close()
+
+    def post(self, event: Event) -> None:
+        """Hand an event to the session; it is lost if the session has gone.
+
+        Raises:
+            InputError: a value is not finite or not in range.
+        """
+        self._send(packed(checked_event(event, self._robots, self._scenarios)))
+
+    def frames(self) -> Iterator[Frame]:
+        """Frames as they come; asking for the next one says that the last one has been drawn."""
+        with self._connection:
+            while True:
+                try:
+                    data = self._connection.recv_bytes()
+                except (EOFError, OSError):
+                    return
+                yield unpacked_frame(data)
+                self._send(packed(FrameTaken()))
+
+    def close(self) -> None:
+        """Let the worker go and wait until it is gone; `frames` ends."""
+        self.process.terminate()
+        self.process.join(_PATIENCE)
+        if self.process.is_alive():
+            self.process.kill()
+            self.process.join()
+
+    def _send(self, data: bytes) -> None:
+        with self._sending:
+            try:
+                self._connection.send_bytes(data)
+            except OSError:
+                return  # the session has gone; whoever reads the frames finds out

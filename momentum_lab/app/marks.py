@@ -1,0 +1,139 @@
+"""The marks of the picture: what each one is called, looks like and means. Legend, scene and plots read them here.
+
+Colours are the Okabe-Ito palette, which people with any kind of colour vision can tell apart; every mark also
+has a shape and a label of its own, so that colour is never the only difference.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Color = tuple[int, int, int]
+Shape = Literal[
+    "ball",
+    "ring",
+    "disc",
+    "diamond",
+    "triangle",
+    "cross",
+    "square",
+    "hollow square",
+    "arrow",
+    "thin arrow",
+    "line",
+    "bar",
+    "area",
+    "dashes",
+]
+Anchor = Literal["top-left", "top-right", "bottom-left", "bottom-right", "bottom-center"]
+
+BLACK: Color = (0, 0, 0)
+ORANGE: Color = (230, 159, 0)
+SKY: Color = (86, 180, 233)
+GREEN: Color = (0, 158, 115)
+YELLOW: Color = (240, 228, 66)
+BLUE: Color = (0, 114, 178)
+VERMILLION: Color = (213, 94, 0)
+PURPLE: Color = (204, 121, 167)
+GREY: Color = (110, 110, 110)
+
+
+@dataclass(frozen=True, slots=True)
+class MarkStyle:
+    """How one kind of mark looks everywhere.
+
+    Attributes:
+        key: its name in the code.
+        label: its name on the screen.
+        shape: what is drawn.
+        color: red, green, blue, 0 to 255.
+        help: what it means, in one sentence.
+        anchor: which corner of its label sits on the mark; labels of marks that meet do not cover each other.
+    """
+
+    key: str
+    label: str
+    shape: Shape
+    color: Color
+    help: str
+    anchor: Anchor = "bottom-left"
+
+    @property
+    def css(self) -> str:
+        """The colour as #rrggbb."""
+        return "#" + "".join(f"{channel:02x}" for channel in self.color)
+
+
+_STYLES = (
+    MarkStyle("com", "CoM", "ball", ORANGE, "Centre of mass.", "bottom-left"),
+    MarkStyle(
+        "com_ground", "CoM on the ground", "ring", ORANGE, "The point straight below the CoM.", "bottom-right"
+    ),
+    MarkStyle("cop", "CoP", "diamond", BLUE, "Centre of pressure: where the ground pushes.", "top-right"),
+    MarkStyle("foot_cop", "CoP of a foot", "disc", BLUE, "Where the ground pushes on one foot.", "top-right"),
+    MarkStyle(
+        "cop_desired",
+        "desired CoP",
+        "hollow square",
+        SKY,
+        "The CoP that both momentum goals together would need.",
+        "bottom-left",
+    ),
+    MarkStyle(
+        "cop_granted",
+        "granted CoP",
+        "square",
+        SKY,
+        "The nearest CoP that the safe support area allows.",
+        "bottom-right",
+    ),
+    MarkStyle(
+        "cmp",
+        "CMP",
+        "triangle",
+        VERMILLION,
+        "Where the line through the CoM, parallel to the ground reaction force, meets the ground.",
+        "top-left",
+    ),
+    MarkStyle(
+        "capture",
+        "capture point",
+        "cross",
+        PURPLE,
+        "Where the CMP has to be for the CoM to come to rest above it.",
+        "top-left",
+    ),
+    MarkStyle("grf", "GRF", "arrow", GREEN, "Net ground reaction force, drawn from the CoP.", "bottom-right"),
+    MarkStyle(
+        "foot_grf", "GRF of a foot", "thin arrow", GREEN, "Ground reaction force on one foot.", "bottom-right"
+    ),
+    MarkStyle("push", "push", "arrow", BLACK, "The push, where it acts.", "bottom-right"),
+    MarkStyle("com_cmp", "CoM to CMP", "line", VERMILLION, "Parallel to the ground reaction force."),
+    MarkStyle(
+        "gap",
+        "rate of angular momentum",
+        "bar",
+        VERMILLION,
+        "From the CoP to the CMP: the lever with which the ground reaction force turns the body.",
+        "top-left",
+    ),
+    MarkStyle("support", "support polygon", "area", GREY, "The region that the CoP cannot leave."),
+    MarkStyle(
+        "safe_border",
+        "safe border",
+        "dashes",
+        GREY,
+        "How far the controller lets the CoP go; the number is the CoP's distance to the nearest edge.",
+        "top-left",
+    ),
+)
+
+STYLES: dict[str, MarkStyle] = {style.key: style for style in _STYLES}
+
+PRESETS: dict[str, frozenset[str]] = {
+    "minimal": frozenset({"com", "com_ground", "cop", "support", "push"}),
+    "teaching": frozenset(STYLES) - {"foot_cop", "foot_grf", "cop_granted", "capture"},
+    "everything": frozenset(STYLES),
+}
+START_PRESET = "teaching"

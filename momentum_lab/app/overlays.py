@@ -1,0 +1,221 @@
+"""What to draw for one sample, as plain data: no viewer, no handles, nothing that remembers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from momentum_lab.app.support_now import polygon_of, sole_placement
+from momentum_lab.momentum.ground import GRAVITY, NO_FORCE
+from momentum_lab.momentum.support import nearest_in_polygon, support_margin
+from momentum_lab.physics.push import Push
+from momentum_lab.recording import Sample
+from momentum_lab.robot.model import RobotModel
+from momentum_lab.status import carrying_feet
+
+Point = tuple[float, float, float]
+
+# Marks on the ground lie in layers, so that none hides in another, m.
+_LAYER = {"support": 0.002, "safe_border": 0.003, "gap": 0.005, "com_ground": 0.006, "cop_granted": 0.007}
+_TOP_LAYER = 0.009
+# A CoP and a CMP closer than this, in CoM heights, show no gap.
+_NO_GAP = 0.006
+# How long a push stays in the picture after its start, s; and its length for a force of one weight, in CoM heights.
+_PUSH_SHOWN = 1.0
+_PUSH_LENGTH = 1.4
+# A dash and a pause of the safe border, m.
+_DASH = 0.012
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """One mark in the world.
+
+    Attributes:
+        key: which mark; its looks are in `marks.STYLES`.
+        points: one point per symbol; start and end per arrow or line; the corners of an area, m.
+        text: a label in addition to its name, with unit; empty: the name only.
+        at: where the label sits; None: at the first point.
+    """
+
+    key: str
+    points: tuple[Point, ...]
+    text: str = ""
+    at: Point | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """What the overlays need to know besides the sample.
+
+    Attributes:
+        robot: the robot.
+        push: the latest push that has begun; None before the first.
+        safe_border: width of the border the controller keeps, m.
+        arrow_scale: length of force arrows against their natural length, on which the weight reaches the CoM.
+    """
+
+    robot: RobotModel
+    push: Push | None = None
+    safe_border: float = 0.0
+    arrow_scale: float = 1.0
+
+
+def overlays(sample: Sample, picture: Picture) -> list[Mark]:
+    """All marks that exist in a sample; what is not there (no contact, no push) is not in the list.
+
+    Args:
+        sample: the sample.
+        picture: what belongs to the picture besides it.
+    """
+    ground = _ground_height(sample)
+    polygon = polygon_of(sample, picture.robot)
+    marks = [
+        *_com(sample, ground),
+        *_support(sample, picture, polygon, ground),
+        *_pressure(sample, polygon, ground),
+        *_forces(sample, picture, ground),
+        *_push(sample, picture, ground),
+    ]
+    return [mark for mark in marks if all(math.isfinite(x) for point in mark.points for x in point)]
+
+
+def _ground_height(sample: Sample) -> float:
+    return float(sample["sole_pose"][:, 2].min())
+
+
+def _com(sample: Sample, ground: float) -> list[Mark]:
+    x, y, z = sample["com"].tolist()
+    return [Mark("com", ((x, y, z),)), Mark("com_ground", (_on_ground("com_ground", (x, y), ground),))]
+
+
+def _support(sample: Sample, picture: Picture, polygon: np.ndarray, ground: float) -> list[Mark]:
+    """The support polygon, the border the controller keeps, and how near the CoP is to the edge."""
+    if len(polygon) < 3:
+        return []
+    safe = polygon_of(sample, picture.robot, picture.safe_border)
+    cop = sample["cop_measured"]
+    edge = _nearest_edge_point(cop, polygon)
+    margin = support_margin(cop, polygon)
+    return [
+        Mark("support", tuple(_on_ground("support", corner, ground) for corner in polygon.tolist())),
+        Mark(
+            "safe_border",
+            _dashes(safe, ground),
+            text=f"{1e3 * margin:.0f} mm to the edge" if math.isfinite(margin) else "",
+            at=_on_ground("safe_border", edge, ground),
+        ),
+    ]
+
+
+def _pressure(sample: Sample, polygon: np.ndarray, ground: float) -> list[Mark]:
+    """Points where the ground pushes, should push and may push."""
+    marks = [
+        Mark(key, (_on_ground(key, sample[name].tolist(), ground),))
+        for key, name in (
+            ("cop_granted", "cop_admissible"),
+            ("cop_desired", "cop_desired"),
+            ("cop", "cop_measured"),
+            ("cmp", "cmp"),
+            ("capture", "capture_point"),
+        )
+    ]
+    return marks if len(polygon) else marks[-1:]
+
+
+def _forces(sample: Sample, picture: Picture, ground: float) -> list[Mark]:
+    """Ground reaction forces, and what they do to the angular momentum."""
+    feet = carrying_feet(sample, picture.robot.mass)
+    if not feet:
+        return []
+    wrenches, com = sample["foot_wrench_measured"], sample["com"]
+    metres_per_newton = _metres_per_newton(sample, picture, ground)
+    foot_cops = [
+        sole_placement(sample, foot).act(np.append(sample["foot_cop_measured"][foot], 0.0)) for foot in feet
+    ]
+    net = wrenches[list(feet), :3].sum(axis=0)
+    cop = np.append(sample["cop_measured"], ground + _TOP_LAYER)
+    cmp = np.append(sample["cmp"], ground + _TOP_LAYER)
+    weights = net / (picture.robot.mass * GRAVITY)
+    marks = [
+        Mark("foot_cop", tuple(_point(p + (0.0, 0.0, _TOP_LAYER)) for p in foot_cops)),
+        Mark(
+            "foot_grf",
+            tuple(
+                end
+                for foot, start in zip(feet, foot_cops, strict=True)
+                for end in (_point(start), _point(start + metres_per_newton * wrenches[foot, :3]))
+            ),
+        ),
+        Mark(
+            "grf",
+            (_point(cop), _point(cop + metres_per_newton * net)),
+            text=f"{np.linalg.norm(net):.0f} N",
+            at=_point(cop + 0.45 * metres_per_newton * net),
+        ),
+        Mark("com_cmp", (_point(com), _point(cmp))),
+    ]
+    gap = float(np.linalg.norm((cmp - cop)[:2]))
+    if gap > _NO_GAP * (com[2] - ground) and weights[2] > NO_FORCE:
+        middle = 0.5 * (cop + cmp)
+        text = f"rate of angular momentum {gap * net[2]:.0f} N m"
+        marks.append(Mark("gap", (_point(cop), _point(cmp)), text=text, at=_point(middle)))
+    return marks
+
+
+def _push(sample: Sample, picture: Picture, ground: float) -> list[Mark]:
+    """The latest push: while it acts and a moment longer, because a tenth of a second is too short to see."""
+    push = picture.push
+    if push is None or not 0.0 <= sample.number("time") - push.start < push.duration + _PUSH_SHOWN:
+        return []
+    com = sample["com"]
+    force = push.force or 0.0
+    height = com[2] if push.height is None else ground + push.height
+    tip = np.array([com[0], com[1], height]) - 0.12 * com[2] * push.direction
+    weight = picture.robot.mass * GRAVITY
+    length = _PUSH_LENGTH * (com[2] - ground) * picture.arrow_scale * force / weight
+    return [
+        Mark(
+            "push",
+            (_point(tip - length * push.direction), _point(tip)),
+            text=f"{force:.0f} N for {1e3 * push.duration:.0f} ms",
+            at=_point(tip - length * push.direction),
+        )
+    ]
+
+
+def _metres_per_newton(sample: Sample, picture: Picture, ground: float) -> float:
+    """So that the weight of the standing robot reaches from the ground to its CoM."""
+    return picture.arrow_scale * (sample["com"][2] - ground) / (picture.robot.mass * GRAVITY)
+
+
+def _dashes(polygon: np.ndarray, ground: float) -> tuple[Point, ...]:
+    """Starts and ends of the dashes along a polygon."""
+    ends: list[Point] = []
+    for corner, following in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+        count = max(1, round(float(np.linalg.norm(following - corner)) / (2.0 * _DASH)))
+        for i in range(count):
+            for along in ((i + 0.25) / count, (i + 0.75) / count):
+                x, y = (corner + along * (following - corner)).tolist()
+                ends.append(_on_ground("safe_border", (x, y), ground))
+    return tuple(ends)
+
+
+def _nearest_edge_point(cop: np.ndarray, polygon: np.ndarray) -> tuple[float, float]:
+    """The point of the border that the CoP is nearest to."""
+    ends = zip(polygon, np.roll(polygon, -1, axis=0), strict=True)
+    candidates = [nearest_in_polygon(cop, np.array(edge)) for edge in ends]
+    nearest = min(candidates, key=lambda point: float(np.linalg.norm(point - cop)))
+    x, y = nearest.tolist()
+    return x, y
+
+
+def _on_ground(key: str, point: tuple[float, float] | list[float], ground: float) -> Point:
+    return float(point[0]), float(point[1]), ground + _LAYER.get(key, _TOP_LAYER)
+
+
+def _point(p: np.ndarray) -> Point:
+    x, y, z = p.tolist()
+    return x, y, z

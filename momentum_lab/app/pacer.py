@@ -1,0 +1,63 @@
+"""How many ticks are due: simulated time follows the clock, and slows down instead of catching up in a burst."""
+
+from __future__ import annotations
+
+from collections import deque
+
+# What may be caught up after a short stall, s of simulated time; what is later than this never happens.
+_BACKLOG = 0.08
+# Over how long the real-time factor is measured, s.
+_WINDOW = 1.0
+
+
+class Pacer:
+    """The clock of one playback.
+
+    Args:
+        timestep: length of a tick, s.
+    """
+
+    def __init__(self, timestep: float) -> None:
+        self._timestep = timestep
+        self._speed = 1.0
+        self._start = 0.0
+        self._ticks = 0
+        self._marks: deque[tuple[float, int]] = deque()
+        self._factor = 0.0
+
+    def start(self, now: float, speed: float) -> None:
+        """Let simulated time run from now on, at a fraction of real time."""
+        self._speed, self._start, self._ticks = speed, now, 0
+        self._marks.clear()
+
+    def due(self, now: float) -> int:
+        """Ticks that should have happened by now and have not."""
+        due = self._owed(now)
+        late = due - max(1, round(_BACKLOG / self._timestep))
+        if late > 0:
+            self._start += late * self._timestep / self._speed
+            due -= late
+        return due
+
+    def done(self, ticks: int) -> None:
+        """Some ticks have happened."""
+        self._ticks += ticks
+
+    def wait(self, now: float) -> float:
+        """How long until the next tick is due, s."""
+        next_tick = self._start + (self._ticks + 1) * self._timestep / self._speed
+        return max(0.0, next_tick - now)
+
+    def real_time_factor(self, now: float) -> float:
+        """Simulated seconds per second over the last second or so."""
+        self._marks.append((now, self._ticks))
+        while len(self._marks) > 2 and now - self._marks[1][0] >= _WINDOW:
+            self._marks.popleft()
+        then, ticks = self._marks[0]
+        if now - then >= 0.2 * _WINDOW:
+            self._factor = (self._ticks - ticks) * self._timestep / (now - then)
+        return self._factor
+
+    def _owed(self, now: float) -> int:
+        # A tick that is due this very moment must not be missed by a rounding error.
+        return int((now - self._start) * self._speed / self._timestep + 1e-6) - self._ticks

@@ -1,0 +1,69 @@
+"""All panels of one browser tab: status and tabs on the right, plots on the left, keys for everything."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import viser
+
+from momentum_lab.app import html
+from momentum_lab.app.control_panel import Choices, ControlPanel
+from momentum_lab.app.keys import add_keys
+from momentum_lab.app.marks import PRESETS, START_PRESET, STYLES
+from momentum_lab.app.plots import Plots
+from momentum_lab.app.push_panel import PushPanel
+from momentum_lab.app.status_bar import StatusBar
+from momentum_lab.app.tabs import Tabs
+from momentum_lab.app.view_panel import ViewPanel, ViewSettings
+from momentum_lab.app.widgets import Post
+from momentum_lab.app.wire import Truth
+
+_RIGHT, _LEFT = 350.0, 350.0
+# Pages narrower than this, width over height, have no room for plots beside the picture.
+_ROOMY = 1.1
+
+
+class Panels:
+    """Every widget of one browser tab.
+
+    Args:
+        client: the browser tab.
+        post: where events go.
+        tell: shows a person what was wrong.
+        look: turns the camera to a named view.
+        choices: robots and scenarios to choose from.
+        truth: what is the case at the start.
+    """
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        post: Post,
+        tell: Callable[[str], None],
+        look: Callable[[str], None],
+        choices: Choices,
+        truth: Truth,
+    ) -> None:
+        gui = client.gui
+        gui.configure_theme(show_share_button=False, show_logo=False, brand_color=(0, 114, 178))
+        gui.set_panel_label("Momentum lab")
+        gui.main_panel.dock_right()
+        gui.main_panel.set_width(_RIGHT)
+        self.settings = ViewSettings()
+        self.status = StatusBar(gui, post)
+        group = gui.add_tab_group()
+        with group.add_tab("Push", viser.Icon.HAND_MOVE):
+            self.push = PushPanel(gui, post, tell)
+        with group.add_tab("Control", viser.Icon.ADJUSTMENTS):
+            self.control = ControlPanel(gui, post, choices, truth)
+        with group.add_tab("View", viser.Icon.EYE):
+            ViewPanel(gui, self.settings, look)
+        plots = gui.add_panel()
+        with plots.add_tab("Plots", viser.Icon.CHART_LINE):
+            gui.add_html(html.legend([key for key in STYLES if key in PRESETS[START_PRESET]], explained=False))
+            self.plots = Plots(gui)
+        plots.dock_left()
+        plots.set_width(_LEFT)
+        if client.camera.aspect < _ROOMY:
+            plots.minimize()
+        add_keys(client, post, self.push, self.status, Tabs(client, group))

@@ -1,0 +1,155 @@
+"""Plots over simulated time: points against the support, rates of both momenta, both momenta, pushes marked."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import viser
+
+from momentum_lab.app.marks import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLES, Color
+from momentum_lab.app.series import WINDOW, Curves, History
+from momentum_lab.recording import Layout
+from momentum_lab.robot.model import RobotModel
+
+# How often the plots are drawn, s.
+_PERIOD = 0.1
+_HEIGHT = 172
+_POINTS = ("com", "cop", "cmp", "capture")
+# What is asked for is grey and dashed, what the ground may give blue, what it gave green like the GRF.
+_KINDS: dict[str, tuple[Color, list[int]]] = {
+    "desired": (GREY, [6, 4]),
+    "admissible": (BLUE, []),
+    "measured": (GREEN, []),
+}
+
+
+class Plots:
+    """The plots of one browser tab.
+
+    Args:
+        gui: where they go.
+        clock: seconds, for tests.
+    """
+
+    def __init__(self, gui: viser.GuiApi, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._next = -math.inf
+        self._history: History | None = None
+        self._direction = np.array([1.0, 0.0])
+        self._places = _plot(
+            gui,
+            "Points along the push (cm)",
+            [_line(STYLES[name].label, STYLES[name].color) for name in _POINTS]
+            + [_line("support", GREY, dash=[3, 3]), _line("", GREY, dash=[3, 3])],
+            soft=12.0,
+            bands=({"series": (6, 5), "fill": "rgba(110,110,110,0.10)"},),
+        )
+        self._linear = _plot(gui, "Rate of linear momentum along the push (N)", _rates(), soft=60.0)
+        self._angular = _plot(gui, "Rate of angular momentum about the axis across (N m)", _rates(), soft=30.0)
+        self._momenta = _plot(
+            gui,
+            "Momentum: linear (N s), angular (kg m²/s)",
+            [_line("linear, along the push", ORANGE), _line("angular, about the axis across", PURPLE)],
+            soft=6.0,
+        )
+
+    def begin(self, robot: RobotModel, layout: Layout) -> None:
+        """Start with empty plots for a robot."""
+        self._history = History(robot, layout)
+
+    def clear(self) -> None:
+        """Empty the plots."""
+        if self._history is not None:
+            self._history.clear()
+        self._next = -math.inf
+
+    def along(self, direction: np.ndarray) -> None:
+        """Show what happens along a direction (2,) from now on, the past included."""
+        self._direction = direction
+
+    def add(self, rows: np.ndarray) -> None:
+        """Take new samples (n, width) and draw them when it is time."""
+        if self._history is None:
+            return
+        self._history.add(rows)
+        now = self._clock()
+        if now >= self._next and len(self._history):
+            self._next = now + _PERIOD
+            self._draw(self._history.curves(self._direction))
+
+    def _draw(self, curves: Curves) -> None:
+        x = _window(curves.time)
+        columns = (
+            (self._places, [*(curves.points[name] for name in _POINTS), *curves.limits]),
+            (self._linear, [curves.linear[kind] for kind in _KINDS]),
+            (self._angular, [curves.angular[kind] for kind in _KINDS]),
+            (self._momenta, [curves.momentum, curves.angular_momentum]),
+        )
+        for plot, ys in columns:
+            plot.data = (x, *(_padded(y, len(x)) for y in ys), _padded(curves.pushed, len(x)))
+
+
+def _window(times: np.ndarray) -> np.ndarray:
+    """Times of the samples, and the end of the window where the first seconds do not fill it."""
+    end = times[0] + WINDOW
+    return np.append(times, end) if times[-1] < end else times
+
+
+def _padded(values: np.ndarray, length: int) -> np.ndarray:
+    """Values up to the length of the time axis; where there are none, nothing is drawn."""
+    return np.append(values, np.full(length - len(values), np.nan))
+
+
+def _rates() -> list[dict[str, Any]]:
+    return [_line(kind, color, dash) for kind, (color, dash) in _KINDS.items()]
+
+
+def _line(label: str, color: Color, dash: list[int] | None = None) -> dict[str, Any]:
+    series: dict[str, Any] = {"label": label, "stroke": _css(color), "width": 1.6, "points": {"show": False}}
+    if dash:
+        series["dash"] = dash
+    return series
+
+
+def _plot(
+    gui: viser.GuiApi,
+    title: str,
+    lines: list[dict[str, Any]],
+    soft: float,
+    bands: tuple[Any, ...] | None = None,
+) -> Any:
+    """A plot whose y axis shows at least from -soft to soft, and a column wherever a push acts."""
+    push = {
+        "label": "push",
+        "scale": "push",
+        "stroke": "rgba(0,0,0,0)",
+        "fill": _css(BLACK, 0.16),
+        "width": 0,
+        "points": {"show": False},
+    }
+    nothing = np.zeros(2)
+    limit = {"pad": 0.08, "mode": 1}
+    return gui.add_uplot(
+        (np.array([0.0, WINDOW]), *(nothing for _ in lines), nothing),
+        ({}, *lines, push),  # type: ignore[arg-type]
+        title=title,
+        bands=bands,
+        scales={
+            "x": {"time": False},
+            "y": {"range": {"min": {**limit, "soft": -soft}, "max": {**limit, "soft": soft}}},  # type: ignore[typeddict-item]
+            "push": {"range": (0.0, 1.0)},
+        },
+        axes=({"size": 26, "font": "10px sans-serif"}, {"size": 42, "font": "10px sans-serif"}),  # type: ignore[typeddict-item]
+        legend={"show": True, "live": False},
+        height=_HEIGHT,
+        padding=(4, 10, 0, 0),
+    )
+
+
+def _css(color: Color, opacity: float = 1.0) -> str:
+    red, green, blue = color
+    return f"rgba({red},{green},{blue},{opacity:g})"

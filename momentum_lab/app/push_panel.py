@@ -1,0 +1,192 @@
+"""The push tab: what to push with, one big button, and how large the push is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import viser
+
+from momentum_lab.app import html
+from momentum_lab.app.robots import LoadedRobot
+from momentum_lab.app.support_now import polygon_of
+from momentum_lab.app.widgets import Post
+from momentum_lab.errors import InputError
+from momentum_lab.events import ApplyPush
+from momentum_lab.momentum.pendulum import pendulum_frequency, pendulum_impulse_bound
+from momentum_lab.momentum.support import distance_to_edge
+from momentum_lab.physics.push import Push
+from momentum_lab.recording import Sample
+
+# The chapter's push: what it does to the velocity of the CoM, m/s, and for how long, ms.
+_VELOCITY_CHANGE, _DURATION = 0.24, 100.0
+# The strongest push of the slider, as a velocity change in 0.1 s, m/s.
+_STRONGEST = 0.7
+_DIRECTIONS = {"forward": 0.0, "left": 90.0, "back": 180.0, "right": -90.0}
+_TRUNK = "trunk"
+# Slower than this the robot stands still, and its support is what the next push will meet, m/s.
+_STILL = 0.02
+
+
+class PushPanel:
+    """The widgets of the push tab.
+
+    Args:
+        gui: where they go.
+        post: where events go.
+        tell: shows a person what was wrong.
+    """
+
+    def __init__(self, gui: viser.GuiApi, post: Post, tell: Callable[[str], None]) -> None:
+        self._gui, self._post, self._tell = gui, post, tell
+        self._last: Push | None = None
+        self._robot: LoadedRobot | None = None
+        self._still: Sample | None = None
+        self._size_text = ""
+        gui.add_html(html.BIG_NEXT)
+        self.button = gui.add_button("Push  (P)", color=(213, 94, 0), icon=viser.Icon.HAND_MOVE)
+        self._size = gui.add_html("")
+        self._force = gui.add_slider("force (N)", 0.0, 500.0, 1.0, 200.0, hint="Peak force of the push.")
+        self._duration = gui.add_slider(
+            "duration (ms)", 10.0, 1000.0, 10.0, _DURATION, hint="How long the push lasts."
+        )
+        self._direction = gui.add_slider(
+            "direction (°)",
+            -180.0,
+            180.0,
+            5.0,
+            0.0,
+            marks=((-90.0, "right"), (0.0, "forward"), (90.0, "left")),
+            hint="Where the push points: 0 forward, 90 to the robot's left.",
+        )
+        self._presets = gui.add_button_group(" ", tuple(_DIRECTIONS))
+        self._body = gui.add_dropdown("body", (_TRUNK,), hint="Which body is pushed.")
+        self._through_com = gui.add_checkbox(
+            "through the CoM", True, hint="Push at the height of the centre of mass."
+        )
+        self._height = gui.add_slider(
+            "height (m)",
+            0.1,
+            2.0,
+            0.01,
+            1.0,
+            disabled=True,
+            hint="Height of the push's line of action above the ground.",
+        )
+        self._shape = gui.add_dropdown(
+            "shape", ("rectangle", "half-sine"), hint="How the force runs over time."
+        )
+        self.repeat = gui.add_button("Repeat the last push", color="gray", icon=viser.Icon.REPEAT)
+        self._wire()
+
+    @property
+    def direction(self) -> np.ndarray:
+        """Unit vector of the chosen direction (2,); forward while it is no number."""
+        angle = float(self._direction.value)
+        radians = math.radians(angle if math.isfinite(angle) else 0.0)
+        return np.array([math.cos(radians), math.sin(radians)])
+
+    def set_robot(self, robot: LoadedRobot) -> None:
+        """Fit ranges and bodies to a robot."""
+        mass = robot.model.mass
+        self._robot, self._still, self._last = robot, None, None
+        self._force.max = _round(mass * _STRONGEST / 0.1)
+        self._force.value = round(mass * _VELOCITY_CHANGE / (1e-3 * _DURATION))
+        self._body.options = (_TRUNK, *(name for name in robot.model.spec.push_bodies if name != _TRUNK))
+
+    def see(self, sample: Sample) -> None:
+        """Take note of a sample: the size of a push is told for the robot as it last stood still."""
+        if self._still is None or float(np.linalg.norm(sample["com_velocity"])) < _STILL:
+            self._still = sample
+
+    def refresh(self) -> None:
+        """Write the size of the push that the button would give."""
+        try:
+            text = self._describe(self.push())
+        except InputError as error:
+            text = html.sentence(str(error))
+        if text != self._size_text:
+            self._size_text = self._size.content = text
+
+    def push(self) -> Push:
+        """The push that the widgets describe.
+
+        Raises:
+            InputError: a value is not a number.
+        """
+        numbers = {
+            "force": self._force.value,
+            "duration": self._duration.value,
+            "direction": self._direction.value,
+            "height": self._height.value,
+        }
+        for name, value in numbers.items():
+            if not math.isfinite(value):
+                raise InputError(name, value, "a finite number")
+        return Push(
+            force=float(numbers["force"]),
+            duration=1e-3 * numbers["duration"],
+            direction_deg=float(numbers["direction"]),
+            height=None if self._through_com.value else float(numbers["height"]),
+            body=None if self._body.value == _TRUNK else self._body.value,
+            shape=self._shape.value,
+        )
+
+    def apply(self) -> None:
+        """Push."""
+        self._give(self.push)
+
+    def apply_again(self) -> None:
+        """Give the last push once more; without one, the push that the widgets describe."""
+        last = self._last
+        self._give(self.push if last is None else lambda: last)
+
+    def _give(self, make: Callable[[], Push]) -> None:
+        try:
+            push = make()
+            self._post(ApplyPush(push))
+            self._last = push
+        except InputError as error:
+            self._tell(str(error))
+
+    def _wire(self) -> None:
+        self.button.on_click(lambda _: self.apply())
+        self.repeat.on_click(lambda _: self.apply_again())
+        self._presets.on_click(lambda event: self._point_to(event.target.value))
+        self._through_com.on_update(lambda _: self._free_height())
+
+    def _point_to(self, name: str) -> None:
+        if name in _DIRECTIONS:
+            self._direction.value = _DIRECTIONS[name]
+
+    def _free_height(self) -> None:
+        self._height.disabled = self._through_com.value
+
+    def _describe(self, push: Push) -> str:
+        """Impulse, and what part of it the CoP alone could catch."""
+        words = f"<b>{push.impulse:.1f} N s</b>"
+        bound = self._bound(push)
+        if bound > 0.0:
+            words += (
+                f" = <b>{push.impulse / bound:.2f}</b> of the pendulum bound "
+                f'<span class="dim">({bound:.1f} N s: all that moving the CoP alone can catch)</span>'
+            )
+        return f'<div class="lab n">{words}</div>'
+
+    def _bound(self, push: Push) -> float:
+        """The largest impulse a pendulum standing like the robot survives without a step, N s."""
+        if self._robot is None or self._still is None:
+            return 0.0
+        robot, sample = self._robot.model, self._still
+        polygon = polygon_of(sample, robot)
+        height = float(sample["com"][2] - sample["sole_pose"][:, 2].min())
+        reach = distance_to_edge(sample["com"][:2], push.direction[:2], polygon)
+        return pendulum_impulse_bound(robot.mass, pendulum_frequency(height), reach, push.duration)
+
+
+def _round(value: float) -> float:
+    """A number with one or two leading digits."""
+    power = 10.0 ** math.floor(math.log10(value) - 1.0)
+    return math.ceil(value / power / 5.0) * 5.0 * power

@@ -1,0 +1,96 @@
+"""The robot in the scene: a tree of joint frames that carries its meshes. Only joints that have moved are sent."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import viser
+
+from momentum_lab.app.robots import LoadedRobot
+
+_ROOT = "/robot"
+_FREE_FLYER = 1
+# Less than this does not show, rad and m.
+_SAME_ANGLE, _SAME_PLACE = 3e-4, 2e-4
+_SEE_THROUGH = 0.3
+
+
+class RobotScene:
+    """One robot in one browser tab.
+
+    Args:
+        client: the browser tab.
+        robot: the robot.
+        q: its configuration (nq,).
+    """
+
+    def __init__(self, client: viser.ClientHandle, robot: LoadedRobot, q: np.ndarray) -> None:
+        self._model = robot.model.model
+        self._data = self._model.createData()
+        pin.forwardKinematics(self._model, self._data, q)
+        self._drawn = q.copy()
+        self._frames = self._add_frames(client)
+        self._meshes = [
+            client.scene.add_mesh_simple(
+                f"{self._frames[mesh.joint].name}/mesh_{i}",
+                mesh.vertices,
+                mesh.faces,
+                color=mesh.color,
+            )
+            for i, mesh in enumerate(robot.meshes)
+        ]
+
+    @property
+    def place_on_ground(self) -> np.ndarray:
+        """Where the robot is, seen from above (2,), m."""
+        return self._drawn[:2].copy()
+
+    def draw(self, q: np.ndarray) -> None:
+        """Move to a configuration (nq,)."""
+        if not np.isfinite(q).all():
+            return
+        angles = np.flatnonzero(np.abs(q[7:] - self._drawn[7:]) > _SAME_ANGLE)
+        base = np.abs(q[:7] - self._drawn[:7])
+        moved = [self._joint_of(i) for i in angles]
+        if base[:3].max() > _SAME_PLACE or base[3:].max() > 0.5 * _SAME_ANGLE:
+            moved.append(_FREE_FLYER)
+            self._drawn[:7] = q[:7]
+        if not moved:
+            return
+        self._drawn[7 + angles] = q[7 + angles]
+        pin.forwardKinematics(self._model, self._data, self._drawn)
+        for joint in moved:
+            place(self._frames[joint], self._data.liMi[joint])
+
+    def see_through(self, on: bool) -> None:
+        """Whether the marks inside the body show."""
+        for mesh in self._meshes:
+            mesh.opacity = _SEE_THROUGH if on else None
+            mesh.cast_shadow = not on
+
+    def remove(self) -> None:
+        """Take the robot out of the scene."""
+        self._frames[_FREE_FLYER].remove()
+
+    def _joint_of(self, angle: int) -> int:
+        """Index of the joint that an actuated angle belongs to: one each, after the universe and the base."""
+        return int(angle) + 2
+
+    def _add_frames(self, client: viser.ClientHandle) -> dict[int, Any]:
+        """One frame per joint, below that of its parent."""
+        frames: dict[int, Any] = {}
+        for joint in range(_FREE_FLYER, self._model.njoints):
+            parent = frames.get(int(self._model.parents[joint]))
+            name = f"{_ROOT if parent is None else parent.name}/{joint}"
+            frames[joint] = client.scene.add_frame(name, show_axes=False)
+            place(frames[joint], self._data.liMi[joint])
+        return frames
+
+
+def place(handle: Any, placement: pin.SE3) -> None:
+    """Give a scene node a placement in its parent's frame."""
+    x, y, z, w = pin.Quaternion(placement.rotation).coeffs().tolist()
+    handle.wxyz = (w, x, y, z)
+    handle.position = tuple(placement.translation.tolist())

@@ -1,0 +1,113 @@
+"""Above the tabs: how the robot is doing, how time runs, and the buttons that run it."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+import viser
+
+from momentum_lab.app import html
+from momentum_lab.app.widgets import Post
+from momentum_lab.app.wire import Truth
+from momentum_lab.events import Pause, Play, Reset, SetSpeed, StepOnce
+from momentum_lab.status import Status
+
+INVITATION = "Push the robot: press P or the button."
+SMALL_STEP, LARGE_STEP = 1, 20
+_SPEEDS = {"1/8": 0.125, "1/4": 0.25, "1/2": 0.5, "1": 1.0}
+# A status that says more than "standing" stays readable for this long, s.
+_READABLE = 0.9
+# How often the figures change, s.
+_PERIOD = 0.1
+
+
+class StatusBar:
+    """Status, time and playback of one browser tab.
+
+    Args:
+        gui: where the widgets go.
+        post: where events go.
+        clock: seconds, for tests.
+    """
+
+    def __init__(
+        self, gui: viser.GuiApi, post: Post, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._post, self._clock = post, clock
+        self._playing = True
+        self._shown: Status | None = None
+        self._since = self._simulated = -math.inf
+        self._next = -math.inf
+        self._texts: dict[str, str] = {}
+        gui.add_html(html.TITLE)
+        self._status = gui.add_html(html.status_line("standing", "standing", "green"))
+        self._time = gui.add_html("")
+        self._invitation = gui.add_html(html.sentence(INVITATION))
+        self._stand_up = gui.add_button(
+            "Stand up again  (R)", color=(0, 114, 178), icon=viser.Icon.ARROW_UP, visible=False
+        )
+        self._buttons = gui.add_button_group("time", ("Pause", "1 ms", "20 ms", "Reset"))
+        speeds = gui.add_button_group("speed", tuple(_SPEEDS))
+        self._stand_up.on_click(lambda _: post(Reset()))
+        self._buttons.on_click(lambda event: self._pressed(event.target.value))
+        speeds.on_click(lambda event: post(SetSpeed(_SPEEDS.get(event.target.value, 1.0))))
+
+    def toggle(self) -> None:
+        """Play what is paused, pause what plays."""
+        self._post(Pause() if self._playing else Play())
+
+    def follow(self, truth: Truth, status: Status, simulated: float) -> None:
+        """Show how the robot is doing.
+
+        Args:
+            truth: what is the case.
+            status: the most important thing to say about the latest sample.
+            simulated: its time, s.
+        """
+        if truth.playing != self._playing:
+            self._playing = truth.playing
+            self._buttons.options = ("Pause" if truth.playing else "Play", "1 ms", "20 ms", "Reset")
+            self._next = -math.inf
+        now = self._clock()
+        if now < self._next and truth.playing:
+            return
+        self._next = now + _PERIOD
+        if simulated < self._simulated:
+            self._shown = None  # the robot has been stood up
+        self._simulated = simulated
+        status = self._readable(status, now, truth.playing)
+        self._write("status", self._status, html.status_line(status.kind, status.words, status.color))
+        line = html.time_line(simulated, truth.real_time_factor, truth.speed, truth.playing)
+        self._write("time", self._time, line)
+        self._invitation.visible = truth.push is None and truth.fall is None
+        self._stand_up.visible = truth.fall is not None or truth.stopped is not None
+
+    def end(self) -> None:
+        """Say that the session's process has gone."""
+        self._status.content = html.status_line(
+            "stopped", "the simulation has ended: reload the page", "black"
+        )
+
+    def _readable(self, status: Status, now: float, playing: bool) -> Status:
+        """The status, or one that has not been readable long enough yet."""
+        shown = self._shown
+        calm = status.kind == "standing"
+        if playing and calm and shown is not None and shown.kind in {"border", "lifted", "solver"}:
+            if now - self._since < _READABLE:
+                return shown
+        self._shown, self._since = status, now
+        return status
+
+    def _pressed(self, name: str) -> None:
+        if name in {"Play", "Pause"}:
+            self._post(Play() if name == "Play" else Pause())
+        elif name == "Reset":
+            self._post(Reset())
+        else:
+            self._post(StepOnce(SMALL_STEP if name == "1 ms" else LARGE_STEP))
+
+    def _write(self, name: str, handle: viser.GuiHtmlHandle, content: str) -> None:
+        if self._texts.get(name) != content:
+            self._texts[name] = handle.content = content

@@ -1,0 +1,58 @@
+"""What supports the robot in one sample: the soles that press, their corners and the polygon they span."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pinocchio as pin
+
+from momentum_lab.momentum.support import distance_to_edge, inset_rectangle, support_polygon
+from momentum_lab.recording import Sample
+from momentum_lab.robot.model import RobotModel
+from momentum_lab.status import carrying_feet
+
+def sole_placement(sample: Sample, foot: int) -> pin.SE3:
+    """Where a sole frame is in the world."""
+    return pin.XYZQUATToSE3(sample["sole_pose"][foot])
+
+
+def polygon_of(sample: Sample, robot: RobotModel, border: float = 0.0) -> np.ndarray:
+    """The support polygon of the feet that carry, without a border along each sole's edge (K, 2), m.
+
+    Args:
+        sample: the sample.
+        robot: whose soles they are.
+        border: width of the border, m.
+    """
+    corners = [
+        _corners_in_world(sample, robot, foot, border) for foot in carrying_feet(sample, robot.mass)
+    ]
+    return support_polygon(np.concatenate(corners)) if corners else np.zeros((0, 2))
+
+
+def extent(polygon: np.ndarray, direction: np.ndarray) -> tuple[float, float]:
+    """Where a line through the middle of a polygon crosses its border, as coordinates along the line.
+
+    Args:
+        polygon: corners, counter-clockwise (K, 2), m.
+        direction: unit vector of the line (2,).
+
+    Returns:
+        The lower and the upper coordinate, m; both NaN when nothing supports.
+    """
+    if len(polygon) < 3:
+        return math.nan, math.nan
+    middle = polygon.mean(axis=0)
+    at = float(middle @ direction)
+    return at - distance_to_edge(middle, -direction, polygon), at + distance_to_edge(
+        middle, direction, polygon
+    )
+
+
+def _corners_in_world(sample: Sample, robot: RobotModel, foot: int, border: float) -> np.ndarray:
+    sole, placement = robot.soles[foot], sole_placement(sample, foot)
+    lower, upper = inset_rectangle(sole.lower, sole.upper, border)
+    (rear, right), (front, left) = lower.tolist(), upper.tolist()
+    corners = np.array([[rear, right, 0.0], [front, right, 0.0], [front, left, 0.0], [rear, left, 0.0]])
+    return corners @ placement.rotation.T + placement.translation

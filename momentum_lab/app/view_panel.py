@@ -1,0 +1,85 @@
+"""The view tab: which marks are drawn, how, and from where."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import viser
+
+from momentum_lab.app import html
+from momentum_lab.app.marks import PRESETS, START_PRESET, STYLES
+from momentum_lab.app.world import VIEWS
+
+_TIMES = {"½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0}
+
+
+@dataclass
+class ViewSettings:
+    """What a person has chosen to see; belongs to one browser tab and never to a session.
+
+    Attributes:
+        shown: keys of the marks that are switched on.
+        labels: whether marks have labels in the scene.
+        see_through: whether the robot is transparent.
+        arrow_scale: length of force arrows against their natural length.
+        changed: whether the next drawing has to look at all of this again.
+    """
+
+    shown: set[str] = field(default_factory=lambda: set(PRESETS[START_PRESET]))
+    labels: bool = True
+    see_through: bool = True
+    arrow_scale: float = 1.0
+    changed: bool = True
+
+
+class ViewPanel:
+    """The widgets of the view tab.
+
+    Args:
+        gui: where they go.
+        settings: what they change.
+        look: turns the camera to a named view.
+    """
+
+    def __init__(self, gui: viser.GuiApi, settings: ViewSettings, look: Callable[[str], None]) -> None:
+        self._settings = settings
+        cameras = gui.add_button_group("camera", tuple(VIEWS))
+        cameras.on_click(lambda event: look(event.target.value))
+        presets = gui.add_button_group("marks", tuple(PRESETS))
+        presets.on_click(lambda event: self._preset(event.target.value))
+        lengths = gui.add_button_group("force arrows", tuple(_TIMES))
+        lengths.on_click(lambda event: self._scale(event.target.value))
+        labels = gui.add_checkbox("labels", settings.labels)
+        labels.on_update(lambda event: self._set("labels", event.target.value))
+        see_through = gui.add_checkbox(
+            "see-through robot", settings.see_through, hint="Shows the marks inside the body."
+        )
+        see_through.on_update(lambda event: self._set("see_through", event.target.value))
+        with gui.add_folder("Each mark", expand_by_default=False):
+            self._switches = {
+                key: gui.add_checkbox(style.label, key in settings.shown, hint=style.help)
+                for key, style in STYLES.items()
+            }
+        for key, switch in self._switches.items():
+            switch.on_update(lambda event, key=key: self._switch(key, event.target.value))
+        gui.add_html(html.legend(STYLES, explained=True))
+
+    def _preset(self, name: str) -> None:
+        if name not in PRESETS:
+            return
+        for key, switch in self._switches.items():
+            switch.value = key in PRESETS[name]
+        self._settings.shown = set(PRESETS[name])
+        self._settings.changed = True
+
+    def _switch(self, key: str, on: bool) -> None:
+        self._settings.shown = (self._settings.shown | {key}) if on else (self._settings.shown - {key})
+        self._settings.changed = True
+
+    def _scale(self, name: str) -> None:
+        self._set("arrow_scale", _TIMES.get(name, 1.0))
+
+    def _set(self, name: str, value: bool | float) -> None:
+        setattr(self._settings, name, value)
+        self._settings.changed = True

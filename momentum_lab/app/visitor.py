@@ -1,0 +1,183 @@
+"""One browser tab: its own session in its own process, its own scene, its own panels."""
+
+from __future__ import annotations
+
+import threading
+import traceback
+from dataclasses import dataclass
+
+import viser
+
+from momentum_lab.app.control_panel import Choices
+from momentum_lab.app.link import Link
+from momentum_lab.app.mark_scene import MarkScene
+from momentum_lab.app.overlays import Picture, overlays
+from momentum_lab.app.panels import Panels
+from momentum_lab.app.profile import RenderProfile
+from momentum_lab.app.robot_scene import RobotScene
+from momentum_lab.app.robots import LoadedRobot, RobotShelf
+from momentum_lab.app.wire import Frame, Truth, rows_of
+from momentum_lab.app.world import START_VIEW, VIEWS, add_world, look
+from momentum_lab.errors import InputError
+from momentum_lab.events import Event
+from momentum_lab.recording import Sample
+from momentum_lab.scenario import Scenario
+from momentum_lab.session import Fall
+from momentum_lab.status import status_of
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """What one robot of one browser tab is drawn with.
+
+    Attributes:
+        name: which robot.
+        loaded: the robot.
+        body: its meshes in the scene.
+        marks: its marks in the scene.
+        size: height of its CoM when it came on stage, m.
+    """
+
+    name: str
+    loaded: LoadedRobot
+    body: RobotScene
+    marks: MarkScene
+    size: float
+
+
+class Visitor:
+    """Draws the session of one browser tab and hands on what its person wants.
+
+    Args:
+        client: the browser tab.
+        shelf: loaded robots.
+        scenario: what the session starts with.
+        choices: what can be chosen.
+        profile: how much to draw.
+    """
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        shelf: RobotShelf,
+        scenario: Scenario,
+        choices: Choices,
+        profile: RenderProfile,
+    ) -> None:
+        self._client, self._shelf, self._profile = client, shelf, profile
+        self._choices = choices
+        self._link = Link(scenario, choices.robots, choices.scenarios)
+        self._stage: Stage | None = None
+        self._panels: Panels | None = None
+        self._run = -1
+        self.frames = 0
+        self.latest: Frame | None = None
+        self._thread = threading.Thread(target=self._live, name=f"visitor-{client.client_id}", daemon=True)
+        self._thread.start()
+
+    @property
+    def worker_pid(self) -> int | None:
+        """Process id of the session."""
+        return self._link.process.pid
+
+    def post(self, event: Event) -> None:
+        """Hand an event to the session; tell the person if it is not allowed."""
+        try:
+            self._link.post(event)
+        except InputError as error:
+            self.tell(str(error))
+
+    def tell(self, words: str) -> None:
+        """Show a notice."""
+        self._client.add_notification("Not possible", words, auto_close_seconds=8.0, color="orange")
+
+    def close(self) -> None:
+        """End the session and the drawing."""
+        self._link.close()
+        self._thread.join()
+
+    def _live(self) -> None:
+        """Draw frames until the session ends."""
+        try:
+            add_world(self._client, self._profile)
+            for frame in self._link.frames():
+                self._draw(frame)
+                self.latest = frame
+                self.frames += 1
+        except Exception:
+            traceback.print_exc()
+            self._link.close()
+        if self._panels is not None:
+            self._panels.status.end()
+
+    def _draw(self, frame: Frame) -> None:
+        """Everything that is new in a frame, sent at once."""
+        truth = frame.truth
+        loaded = self._shelf.get(truth.robot)
+        sample = Sample.of(loaded.layout, rows_of(frame.row, loaded.layout.width)[0])
+        stage = self._set_stage(truth, loaded, sample)
+        panels = self._panels or self._furnish(truth)
+        if truth.run != self._run:
+            self._run = truth.run
+            panels.plots.clear()
+        self._draw_scene(stage, panels, truth, sample)
+        self._draw_panels(panels, frame, loaded, sample)
+        self._client.flush()
+
+    def _set_stage(self, truth: Truth, loaded: LoadedRobot, sample: Sample) -> Stage:
+        """The stage for the robot that plays; the one before it leaves."""
+        if self._stage is not None and self._stage.name == truth.robot:
+            return self._stage
+        if self._stage is not None:
+            self._stage.body.remove()
+            self._stage.marks.remove()
+        size = float(sample["com"][2])
+        body = RobotScene(self._client, loaded, sample["q"])
+        self._stage = Stage(truth.robot, loaded, body, MarkScene(self._client, size), size)
+        self._look(START_VIEW)
+        if self._panels is not None:
+            self._receive(self._panels, self._stage)
+        return self._stage
+
+    def _furnish(self, truth: Truth) -> Panels:
+        self._panels = Panels(self._client, self.post, self.tell, self._look, self._choices, truth)
+        if self._stage is not None:
+            self._receive(self._panels, self._stage)
+        return self._panels
+
+    def _receive(self, panels: Panels, stage: Stage) -> None:
+        """Fit the panels to the robot on stage."""
+        panels.push.set_robot(stage.loaded)
+        panels.plots.begin(stage.loaded.model, stage.loaded.layout)
+        panels.settings.changed = True
+
+    def _draw_scene(self, stage: Stage, panels: Panels, truth: Truth, sample: Sample) -> None:
+        settings = panels.settings
+        if settings.changed:
+            settings.changed = False
+            stage.body.see_through(settings.see_through)
+        picture = Picture(
+            stage.loaded.model, truth.push, truth.gains.get("safe_border", 0.0), settings.arrow_scale
+        )
+        stage.body.draw(sample["q"])
+        stage.marks.draw(overlays(sample, picture), settings.shown, settings.labels)
+
+    def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
+        truth = frame.truth
+        fall = None if truth.fall is None else Fall(truth.fall.time, truth.fall.reason)
+        status = status_of(sample, loaded.model, fall, truth.failure, truth.stopped)
+        panels.status.follow(truth, status, sample.number("time"))
+        panels.control.follow(truth)
+        panels.push.see(sample)
+        panels.push.refresh()
+        if truth.push is not None:
+            panels.plots.along(truth.push.direction[:2])
+        panels.plots.add(rows_of(frame.history, loaded.layout.width))
+        for notice in frame.notices:
+            self.tell(notice)
+
+    def _look(self, name: str) -> None:
+        """Turn the camera to the robot where it is now."""
+        stage = self._stage
+        if stage is not None and name in VIEWS:
+            look(self._client, VIEWS[name], stage.size, stage.body.place_on_ground)

@@ -1,0 +1,99 @@
+"""What the server and a worker tell each other over the pipe: events and receipts in, frames out."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+
+from momentum_lab import events
+from momentum_lab.physics.push import Push
+
+
+class FrameTaken(msgspec.Struct, frozen=True, tag=True):
+    """The last frame has been drawn; the next one may be sent."""
+
+
+class Fallen(msgspec.Struct, frozen=True):
+    """When and why the robot has fallen."""
+
+    time: float
+    reason: str
+
+
+class Truth(msgspec.Struct, frozen=True):
+    """What is the case in a session, next to its samples.
+
+    Attributes:
+        run: counts every new session and every standing up; what belongs to an older run is history.
+        scenario: name of the scenario.
+        robot: name of the robot, or the path of its file.
+        controller: name of the controller.
+        priority: from 0 to 1.
+        gains: all gains of the controller.
+        playing: whether simulated time runs.
+        speed: the fraction of real time it is asked to run at.
+        real_time_factor: simulated seconds per second, measured over about a second.
+        fall: when and why the robot has fallen; None while it stands.
+        failure: why the last failed solve had no answer; None when none has failed.
+        failures: how many solves have failed since the robot stood up.
+        stopped: why the simulation cannot go on; None while it can.
+        push: the latest push that has begun; None before the first.
+    """
+
+    run: int
+    scenario: str
+    robot: str
+    controller: str
+    priority: float
+    gains: dict[str, float]
+    playing: bool
+    speed: float
+    real_time_factor: float
+    fall: Fallen | None
+    failure: str | None
+    failures: int
+    stopped: str | None
+    push: Push | None
+
+
+class Frame(msgspec.Struct, frozen=True):
+    """Everything new since the last frame.
+
+    Attributes:
+        truth: what is the case.
+        row: the latest sample, float64.
+        history: the samples at the pace of the plots since the last frame, float64, oldest first.
+        notices: what has to be told to the person, once.
+    """
+
+    truth: Truth
+    row: bytes
+    history: bytes
+    notices: tuple[str, ...] = ()
+
+
+Message = events.Event | FrameTaken
+
+_encoder = msgspec.msgpack.Encoder()
+_message_decoder = msgspec.msgpack.Decoder(Message)
+_frame_decoder = msgspec.msgpack.Decoder(Frame)
+
+
+def packed(message: Message | Frame) -> bytes:
+    """A message or a frame as bytes."""
+    return _encoder.encode(message)
+
+
+def unpacked_message(data: bytes) -> Message:
+    """The message that `packed` has written."""
+    return _message_decoder.decode(data)
+
+
+def unpacked_frame(data: bytes) -> Frame:
+    """The frame that `packed` has written."""
+    return _frame_decoder.decode(data)
+
+
+def rows_of(data: bytes, width: int) -> np.ndarray:
+    """Samples (n, width) out of a frame's bytes."""
+    return np.frombuffer(data, dtype=np.float64).reshape(-1, width)

@@ -1,0 +1,145 @@
+"""The process that owns one session: it keeps time, takes events and sends frames, and never waits for a reader.
+
+A frame is only sent when the server has taken the one before, so that a slow reader gets fewer frames and the
+simulation does not notice. The process ends when its pipe closes.
+"""
+
+from __future__ import annotations
+
+import gc
+import signal
+import time
+from multiprocessing.connection import Connection
+
+import msgspec
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from momentum_lab.app.pacer import Pacer
+from momentum_lab.app.playback import Playback
+from momentum_lab.app.wire import Frame, FrameTaken, packed, unpacked_message
+from momentum_lab.errors import LabError
+from momentum_lab.events import Event, Play, SetSpeed
+from momentum_lab.scenario import Scenario
+
+FRAMES_PER_SECOND = 40.0
+HISTORY_EVERY = 20
+"""Ticks between two samples of the plots."""
+
+# Ticks in a row before the pipe is looked at again.
+_BATCH = 8
+# Shorter waits than this cost more than they give, s; and how long a paused session waits for an event, s.
+_SHORT, _LONG = 0.002, 1.0
+# Samples that a reader who does not read may miss.
+_MOST_HISTORY = 1000
+
+
+def main(connection: Connection, scenario: bytes) -> None:
+    """Run a session until the pipe closes.
+
+    Args:
+        connection: the worker's end of the pipe.
+        scenario: what to start with, as JSON.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with threadpool_limits(1), connection:
+        try:
+            Worker(connection, Playback(msgspec.json.decode(scenario, type=Scenario))).run()
+        except (EOFError, BrokenPipeError, ConnectionResetError):
+            return
+
+
+class Worker:
+    """A playback and the pipe it is steered through.
+
+    Args:
+        connection: the worker's end of the pipe.
+        playback: the playback.
+    """
+
+    def __init__(self, connection: Connection, playback: Playback) -> None:
+        self._connection = connection
+        self._playback = playback
+        self._pacer = Pacer(playback.session.scenario.timestep)
+        self._history: list[np.ndarray] = []
+        self._notices: list[str] = []
+        self._taken = True
+        self._news = True
+        self._next_frame = 0.0
+
+    def run(self) -> None:
+        """Keep going until the pipe closes.
+
+        Raises:
+            EOFError: it has closed.
+        """
+        gc.collect()
+        gc.freeze()  # what is loaded by now never becomes garbage
+        self._pacer.start(time.perf_counter(), self._playback.speed)
+        while True:
+            if self._connection.poll(self._rest(time.perf_counter())):
+                self._receive()
+            if self._playback.playing:
+                self._advance(min(self._pacer.due(time.perf_counter()), _BATCH))
+            self._send(time.perf_counter())
+
+    def _receive(self) -> None:
+        """One message out of the pipe."""
+        message = unpacked_message(self._connection.recv_bytes())
+        if isinstance(message, FrameTaken):
+            self._taken = True
+        else:
+            self._take(message)
+
+    def _take(self, event: Event) -> None:
+        playback = self._playback
+        run, playing, ticks = playback.run, playback.playing, playback.session.ticks
+        try:
+            playback.take(event)
+        except LabError as error:
+            self._notices.append(str(error))
+        if playback.run != run:
+            self._history.clear()
+        if playback.run != run or playing != playback.playing or isinstance(event, Play | SetSpeed):
+            self._pacer.start(time.perf_counter(), playback.speed)
+        if playback.run != run or playback.session.ticks != ticks:
+            self._remember()
+        self._news = True
+
+    def _advance(self, due: int) -> None:
+        playback = self._playback
+        for _ in range(due):
+            playback.tick(1)
+            if playback.session.ticks % HISTORY_EVERY == 0:
+                self._remember()
+        self._pacer.done(due)
+        self._news = self._news or due > 0
+
+    def _remember(self) -> None:
+        self._history.append(self._playback.latest.row.copy())
+        del self._history[:-_MOST_HISTORY]
+
+    def _send(self, now: float) -> None:
+        """A frame, if there is something new, the last one has been taken and it is time for the next."""
+        if not (self._news and self._taken) or now < self._next_frame:
+            return
+        frame = Frame(
+            truth=self._playback.truth(self._pacer.real_time_factor(now)),
+            row=self._playback.latest.row.tobytes(),
+            history=b"".join(row.tobytes() for row in self._history),
+            notices=tuple(self._notices),
+        )
+        self._history.clear()
+        self._notices.clear()
+        self._taken = self._news = False
+        self._next_frame = max(self._next_frame + 1.0 / FRAMES_PER_SECOND, now)
+        self._connection.send_bytes(packed(frame))
+
+    def _rest(self, now: float) -> float:
+        """How long nothing has to be done, s; an event ends it early."""
+        if self._playback.playing:
+            wait = self._pacer.wait(now)
+            return 0.0 if wait == 0.0 else max(wait, _SHORT)
+        if self._news and self._taken:
+            return max(0.0, self._next_frame - now)
+        return _LONG

@@ -1,0 +1,237 @@
+"""What may be typed: commands, options, their ranges and their help."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import re
+from collections.abc import Callable
+from typing import Any, NoReturn
+
+from momentum_lab import __version__
+from momentum_lab.errors import InputError
+from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
+from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
+
+COMMANDS = ("app", "run", "list", "bench")
+KINDS = ("robots", "controllers", "scenarios", "lessons", "gains")
+_MAX_PORT = 65535
+_MAX_BENCH_SECONDS = 600.0
+_ABOVE_ZERO = math.ulp(0.0)
+
+
+def parsed(words: list[str]) -> argparse.Namespace:
+    """The words of a command line as a namespace, with `command` as its first word.
+
+    Raises:
+        InputError: a word has no meaning, or a value is no number or out of range.
+    """
+    first = words[0] if words else ""
+    if not first or (first.startswith("-") and first not in ("-h", "--help", "--version")):
+        words = ["app", *words]
+    elif not first.startswith("-") and first not in COMMANDS:
+        raise InputError("command", first, ", ".join(COMMANDS))
+    args, unknown = _parser().parse_known_args(_with_negative_numbers(words))
+    if unknown:
+        options = ", ".join(args.options)
+        raise InputError("argument", unknown[0], f"{args.usage}; options: {options}")
+    return args
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose complaints have the form of every other error, and which knows its options."""
+
+    def __init__(self, **settings: Any) -> None:
+        self.options: list[str] = []
+        super().__init__(allow_abbrev=False, **settings)
+
+    def add_argument(self, *names: Any, **settings: Any) -> argparse.Action:
+        action = super().add_argument(*names, **settings)
+        self.options += [name for name in action.option_strings if name.startswith("--")]
+        return action
+
+    def error(self, message: str) -> NoReturn:
+        """Only missing and superfluous values come here; all other checks are in the types."""
+        argument, _, rule = message.removeprefix("argument ").partition(": ")
+        if "'" in rule:
+            raise InputError(argument, rule.split("'")[1], "the option alone, without a value")
+        raise InputError(argument, "nothing", "a value after it")
+
+
+def number(option: str, low: float, high: float, unit: str) -> Callable[[str], float]:
+    """A type for numbers within a range; `_ABOVE_ZERO` as the lower end leaves out zero.
+
+    Raises:
+        InputError: (the type does) the text is not a finite number within the range.
+    """
+    start = "above 0, at most" if low == _ABOVE_ZERO else f"from {low:g} to"
+
+    def convert(text: str) -> float:
+        value = as_number(text)
+        if isinstance(value, str) or not low <= value <= high:
+            raise InputError(option, text, f"a number {start} {high:g} ({unit})")
+        return value
+
+    return convert
+
+
+def whole_number(option: str, low: int, high: int) -> Callable[[str], int]:
+    """A type for whole numbers within a range.
+
+    Raises:
+        InputError: (the type does) the text is not such a number.
+    """
+
+    def convert(text: str) -> int:
+        if not re.fullmatch(r"\d{1,18}", text, re.ASCII) or not low <= int(text) <= high:
+            raise InputError(option, text, f"a whole number from {low} to {high}")
+        return int(text)
+
+    return convert
+
+
+def as_number(text: str) -> float | str:
+    """The number a text spells, or the text itself when it spells none that is finite."""
+    try:
+        value = float(text)
+    except ValueError:
+        return text
+    return value if math.isfinite(value) and "_" not in text else text
+
+
+def _gain_setting(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not (name and equals and value):
+        raise InputError("--set", text, "GAIN=VALUE, such as linear_damping=8")
+    return name, value
+
+
+def _with_negative_numbers(words: list[str]) -> list[str]:
+    """`--push -inf` as `--push=-inf`: argparse takes most negative numbers for options."""
+    joined: list[str] = []
+    for word in words:
+        if joined and re.fullmatch(r"--[a-z-]+", joined[-1]) and re.match(r"-(\.?\d|inf|nan)", word, re.I):
+            joined[-1] += f"={word}"
+        else:
+            joined.append(word)
+    return joined
+
+
+def _parser() -> _Parser:
+    parser = _Parser(
+        prog="momentum-lab",
+        description="Push a humanoid and watch its momentum. Without a command: the app on 127.0.0.1:8080.",
+    )
+    parser.add_argument("--version", action="version", version=f"momentum-lab {__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND", title="commands")
+    for name, help, add in (
+        ("app", "open the lab in the browser", _app_arguments),
+        ("run", "run a scenario without a screen", _run_arguments),
+        ("list", "what there is: robots, controllers, scenarios, lessons, gains", _list_arguments),
+        ("bench", "how fast the lab is on this machine", _bench_arguments),
+    ):
+        command: Any = commands.add_parser(name, help=help, description=f"{help[0].upper()}{help[1:]}.")
+        add(command)
+        command.set_defaults(command=name, options=command.options, usage=_usage(name))
+    return parser
+
+
+def _usage(command: str) -> str:
+    words = {"run": "run SCENARIO", "list": f"list {'|'.join(KINDS)}"}
+    return words.get(command, command)
+
+
+def _app_arguments(parser: _Parser) -> None:
+    parser.add_argument("--scenario", default="stand", metavar="S", help="what to start with")
+    _choice_arguments(parser)
+    parser.add_argument("--host", default="127.0.0.1", metavar="H", help="address to serve on")
+    parser.add_argument(
+        "--port",
+        type=whole_number("--port", 0, _MAX_PORT),
+        default=8080,
+        metavar="P",
+        help="port to serve on; 0: any free one",
+    )
+    parser.add_argument("--no-browser", action="store_true", help="do not open a browser window")
+
+
+def _run_arguments(parser: _Parser) -> None:
+    parser.add_argument("scenario", nargs="?", default="", metavar="SCENARIO", help="a name, or a .toml file")
+    _choice_arguments(parser)
+    _push_arguments(parser)
+    parser.add_argument(
+        "--priority",
+        type=number("--priority", 0.0, 1.0, "0 keeps linear momentum, 1 angular momentum"),
+        metavar="X",
+        help="which momentum to keep: 0 linear, 1 angular",
+    )
+    parser.add_argument(
+        "--set",
+        type=_gain_setting,
+        action="append",
+        default=[],
+        metavar="GAIN=VALUE",
+        help="change a gain; may be repeated",
+    )
+    parser.add_argument(
+        "--seconds",
+        type=number("--seconds", MIN_SECONDS, MAX_SECONDS, "s"),
+        metavar="T",
+        help="how long to simulate, s",
+    )
+    parser.add_argument("--engine", metavar="E", help="which physics: pinocchio")
+    parser.add_argument(
+        "--seed", type=whole_number("--seed", 0, MAX_SEED), metavar="N", help="seed of random numbers"
+    )
+    parser.add_argument("--out", metavar="FILE", help="save the trace as .npz")
+    parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+
+
+def _push_arguments(parser: _Parser) -> None:
+    parser.add_argument(
+        "--push",
+        type=number("--push", 0.0, MAX_FORCE, "N"),
+        metavar="N",
+        help="one push of this force instead of the scenario's, N",
+    )
+    parser.add_argument(
+        "--push-duration",
+        type=number("--push-duration", _ABOVE_ZERO, MAX_DURATION, "s"),
+        metavar="S",
+        help="how long it lasts, s",
+    )
+    parser.add_argument(
+        "--push-direction",
+        type=number("--push-direction", -360.0, 360.0, "degrees"),
+        metavar="DEG",
+        help="where it points: 0 forward, 90 left, degrees",
+    )
+    parser.add_argument(
+        "--push-height",
+        type=number("--push-height", _ABOVE_ZERO, MAX_HEIGHT, "m"),
+        metavar="M",
+        help="height of its line of action, m; otherwise through the CoM",
+    )
+
+
+def _choice_arguments(parser: _Parser) -> None:
+    parser.add_argument("--robot", metavar="R", help="a name, or a robot's .toml file")
+    parser.add_argument("--controller", metavar="C", help="who keeps the balance")
+
+
+def _list_arguments(parser: _Parser) -> None:
+    parser.add_argument("kind", nargs="?", default="", metavar="|".join(KINDS), help="what to list")
+    parser.add_argument("--controller", metavar="C", default="computed-torque", help="whose gains to list")
+    parser.add_argument("--json", action="store_true", help="print a JSON array")
+
+
+def _bench_arguments(parser: _Parser) -> None:
+    parser.add_argument(
+        "--seconds",
+        type=number("--seconds", 1.0, _MAX_BENCH_SECONDS, "s"),
+        default=20.0,
+        metavar="S",
+        help="how long to measure, s",
+    )
+    parser.add_argument("--app", action="store_true", help="measure the app with one client instead")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")

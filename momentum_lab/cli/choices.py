@@ -1,0 +1,63 @@
+"""The scenario that a command line asks for."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from typing import Any
+
+import msgspec
+
+from momentum_lab.cli.arguments import as_number
+from momentum_lab.control.gains import with_gains
+from momentum_lab.control.registry import controller_entry
+from momentum_lab.errors import GainError, InputError
+from momentum_lab.physics.push import Push
+from momentum_lab.scenario import Scenario, changed, load_scenario
+
+_FIELDS = ("robot", "controller", "priority", "seconds", "engine", "seed")
+_DEFAULT_START = 0.5
+
+
+def chosen_scenario(args: Namespace) -> Scenario:
+    """The named scenario with everything that the options change.
+
+    Raises:
+        InputError: something is unknown or out of range.
+    """
+    given = vars(args)
+    scenario = load_scenario(args.scenario)
+    changes: dict[str, Any] = {name: given[name] for name in _FIELDS if given.get(name) is not None}
+    changes["gains"] = _gains(given.get("set", []), args.controller, scenario)
+    changes["pushes"] = _pushes(given, scenario)
+    return changed(scenario, **changes)
+
+
+def _gains(settings: list[tuple[str, str]], controller: str | None, scenario: Scenario) -> dict[str, float]:
+    """The scenario's gains, if they are this controller's, and those that were set."""
+    kept = scenario.gains if controller in (None, scenario.controller) else {}
+    gains = controller_entry(controller or scenario.controller).gains
+    values: dict[str, Any] = {}
+    for name, text in settings:
+        values[name] = as_number(text)
+        try:
+            with_gains(gains, {name: values[name]})
+        except GainError as error:
+            unknown = error.argument == "gain"
+            argument, given = ("--set", name) if unknown else (f"--set {name}", text)
+            raise GainError(argument, given, error.allowed) from error
+    return {**kept, **values}
+
+
+def _pushes(given: dict[str, Any], scenario: Scenario) -> tuple[Push, ...]:
+    """One rectangular push of the given force, or the scenario's own with what was given changed in each."""
+    options = {"duration": "push_duration", "direction_deg": "push_direction", "height": "push_height"}
+    details = {field: given[name] for field, name in options.items() if given.get(name) is not None}
+    force = given.get("push")
+    if force is not None:
+        start = scenario.pushes[0].start if scenario.pushes else _DEFAULT_START
+        return (Push(force=force, start=start, **details),) if force > 0.0 else ()
+    if details and not scenario.pushes:
+        field, value = next(iter(details.items()))
+        option = f"--{options[field]}".replace("_", "-")
+        raise InputError(option, f"{value:g}", f"together with --push N, because {scenario.name} has no push")
+    return tuple(msgspec.structs.replace(push, **details) for push in scenario.pushes)

@@ -1,0 +1,111 @@
+"""momentum-lab list: the names that other commands take."""
+
+from __future__ import annotations
+
+import ast
+from argparse import Namespace
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+from rich.console import Console
+from rich.table import Table
+
+from momentum_lab.cli.arguments import KINDS
+from momentum_lab.control.gains import declared_gains
+from momentum_lab.control.registry import CONTROLLERS, controller_entry
+from momentum_lab.errors import InputError
+from momentum_lab.paths import LESSONS
+from momentum_lab.robot.catalog import load_spec, robot_names
+from momentum_lab.scenario import load_scenario, scenario_names
+
+# Columns of a pipe have room; only a terminal has an edge.
+_WIDE = 200
+
+Things = list[dict[str, Any]]
+
+
+def list_things(args: Namespace) -> int:
+    """Print all things of one kind, as a table or as a JSON array of objects with a name each.
+
+    Raises:
+        InputError: there is no such kind.
+    """
+    if args.kind not in KINDS:
+        raise InputError("list", args.kind, ", ".join(KINDS))
+    things = gains(args.controller) if args.kind == "gains" else _LISTS[args.kind]()
+    if args.json:
+        print(msgspec.json.encode(things).decode())
+    elif things:
+        _show(things)
+    return 0
+
+
+def robots() -> Things:
+    """All robots of the catalog."""
+    return [{"name": name, "title": load_spec(name).title} for name in robot_names()]
+
+
+def controllers() -> Things:
+    """All controllers of the registry."""
+    return [
+        {"name": name, "title": entry.title, "summary": entry.summary} for name, entry in CONTROLLERS.items()
+    ]
+
+
+def scenarios() -> Things:
+    """All scenarios that ship with the package."""
+    return [{"name": name, "title": load_scenario(name).title} for name in scenario_names()]
+
+
+def lessons() -> Things:
+    """All lessons, in their order; the title is the first line of the lesson's docstring."""
+    return [{"name": path.stem, "title": _title(path.read_text())} for path in sorted(LESSONS.glob("*.py"))]
+
+
+def gains(controller: str) -> Things:
+    """All gains of a controller, in the order of their declaration.
+
+    Raises:
+        InputError: there is no such controller.
+    """
+    return [
+        {
+            "name": gain.name,
+            "default": gain.default,
+            "unit": gain.unit,
+            "range": [gain.low, gain.high],
+            "help": gain.help,
+        }
+        for gain in declared_gains(controller_entry(controller).gains).values()
+    ]
+
+
+_LISTS: dict[str, Callable[[], Things]] = {
+    "robots": robots,
+    "controllers": controllers,
+    "scenarios": scenarios,
+    "lessons": lessons,
+}
+
+
+def _title(source: str) -> str:
+    docstring = ast.get_docstring(ast.parse(source)) or ""
+    return docstring.partition("\n")[0]
+
+
+def _show(things: Things) -> None:
+    table = Table(box=None, pad_edge=False)
+    for column in things[0]:
+        table.add_column(column)
+    for thing in things:
+        table.add_row(*(_text(value) for value in thing.values()))
+    console = Console(markup=False)
+    console.width = console.width if console.is_terminal else _WIDE
+    console.print(table)
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, list):
+        return " to ".join(_text(end) for end in value)
+    return f"{value:g}" if isinstance(value, float) else str(value)

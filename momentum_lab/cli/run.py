@@ -1,0 +1,118 @@
+"""momentum-lab run: a scenario without a screen, its summary and its trace."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from pathlib import Path
+
+import msgspec
+from rich.console import Console
+from rich.table import Table
+
+from momentum_lab.cli.choices import chosen_scenario
+from momentum_lab.cli.progress import interruptible, progress
+from momentum_lab.errors import InputError, SimulationError
+from momentum_lab.headless import Timing, run_headless
+from momentum_lab.provenance import provenance
+from momentum_lab.recording import save_trace, writable_file
+from momentum_lab.scenario import Scenario
+from momentum_lab.session import Session
+from momentum_lab.summary import Summary, summarize
+
+
+def run(args: Namespace) -> int:
+    """Run a scenario, save its trace if asked to, print its summary.
+
+    A simulation that breaks down (its state is not finite any more) is reported on stderr with exit code 1;
+    what was recorded before is saved and summarized, as a fall. Ctrl+C saves what there is and prints no
+    summary.
+
+    Raises:
+        InputError: something that was typed cannot be used.
+        SimulationError: the simulation broke down before its first sample.
+        KeyboardInterrupt: Ctrl+C.
+    """
+    scenario = chosen_scenario(args)
+    out = None if args.out is None else writable_file(Path(args.out))
+    session = _session(scenario)
+    for push in scenario.pushes:
+        if push.start >= scenario.seconds:
+            _note(f"the push at {push.start:g} s comes after the end of the run at {scenario.seconds:g} s")
+    timing, stopped = _timed(session)
+    if timing.error is not None and not len(session.recording):
+        raise SimulationError(timing.error)
+    if out is not None:
+        save_trace(session.recording, provenance(session), out)
+    if stopped:
+        raise KeyboardInterrupt
+    summary = summarize(session, timing)
+    if args.json:
+        print(msgspec.json.encode(summary).decode())
+    else:
+        show(summary, out)
+    if timing.error is None:
+        return 0
+    _note(timing.error)
+    return 1
+
+
+def show(summary: Summary, out: Path | None) -> None:
+    """The summary for people, on stdout."""
+    table = Table(title=f"{summary.scenario}: {summary.robot}, {summary.controller}", show_header=False)
+    for label, text in _lines(summary):
+        table.add_row(label, text)
+    Console(markup=False).print(table)
+    if out is not None:
+        print(f"trace: {out}")
+
+
+def _note(text: str) -> None:
+    print(f"momentum-lab: {text}", file=sys.stderr)
+
+
+def _session(scenario: Scenario) -> Session:
+    try:
+        return Session(scenario)
+    except MemoryError as error:
+        raise InputError("seconds", scenario.seconds, "a run whose recording fits into memory") from error
+
+
+def _timed(session: Session) -> tuple[Timing, bool]:
+    """Run a session to its end or to Ctrl+C; whether it was the latter."""
+    with interruptible() as stopped, progress(session.scenario.name) as report:
+
+        def proceed(fraction: float) -> bool:
+            report(fraction)
+            return not stopped.is_set()
+
+        timing = run_headless(session, proceed)
+    return timing, stopped.is_set()
+
+
+def _lines(summary: Summary) -> list[tuple[str, str]]:
+    margin = "never supported" if summary.min_cop_margin is None else f"{1e3 * summary.min_cop_margin:.1f} mm"
+    return [
+        ("result", _result(summary)),
+        ("push", _push(summary)),
+        ("CoM moved at most", f"{1e3 * summary.peak_com_excursion:.1f} mm"),
+        ("angular momentum at most", f"{summary.peak_angular_momentum:.2f} kg m^2/s"),
+        ("smallest CoP margin", margin),
+        ("solver failures", f"{summary.qp_failures} ticks"),
+        ("equation residual", f"{summary.max_equation_residual:.1e} m g"),
+        ("speed", f"{summary.real_time_factor:.2f} x real time"),
+        ("tick", f"{summary.tick_us_p50:.0f} us (median), {summary.tick_us_p99:.0f} us (99 %)"),
+    ]
+
+
+def _result(summary: Summary) -> str:
+    if summary.fell:
+        return f"fell at {summary.fall_time:.3f} s: {summary.fall_reason}"
+    state = "stands still" if summary.settled else "stands, still moving"
+    return f"{state} after {summary.seconds:g} s"
+
+
+def _push(summary: Summary) -> str:
+    if summary.impulse == 0.0:
+        return "none"
+    return f"{summary.impulse:.1f} N s, {summary.impulse_ratio:.2f} of what a pendulum survives on its CoP"

@@ -1,0 +1,47 @@
+"""Where a trace comes from: everything that is needed to run it again."""
+
+from __future__ import annotations
+
+from importlib import metadata
+from typing import Any
+
+import msgspec
+
+from momentum_lab import __version__
+from momentum_lab.session import Session
+
+_LIBRARIES = ("pin", "numpy", "placo", "daqp", "scipy", "example-robot-data")
+
+
+def provenance(session: Session) -> dict[str, Any]:
+    """What the meta entry of a trace says, as plain data that goes to JSON.
+
+    Versions; the scenario as it was run; controller, gains and priority as they are now; the log of events;
+    and the robot: its URDF as a path relative to the folder `robots` of the example-robot-data distribution
+    (absolute if it lies elsewhere), mass (kg), and for each foot its sole frame and rectangle (m).
+    """
+    robot = session.robot
+    return {
+        "versions": versions(),
+        "scenario": msgspec.to_builtins(session.scenario),
+        "controller": session.controller,
+        "gains": msgspec.to_builtins(session.gains),
+        "priority": session.priority,
+        "seed": session.scenario.seed,
+        "events": msgspec.to_builtins(session.log),
+        "urdf": robot.spec.urdf,
+        "robot": {
+            "name": robot.spec.name,
+            "mass": robot.mass,
+            "friction": robot.spec.friction,
+            "feet": {
+                name: {"frame": foot.frame, "x": foot.x, "y": foot.y}
+                for name, foot in robot.spec.feet.items()
+            },
+        },
+    }
+
+
+def versions() -> dict[str, str]:
+    """Versions of this package and of the libraries that its numbers depend on."""
+    return {"momentum_lab": __version__, **{name: metadata.version(name) for name in _LIBRARIES}}

@@ -1,0 +1,86 @@
+"""Torques when there is no answer: a held posture, said in words, and never silently zero."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from momentum_lab.control import computed_torque
+from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueGains
+from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture, limp
+from momentum_lab.errors import SolverError
+from tests.conftest import assert_close
+from tests.control.situations import goal, home, swaying
+
+
+def test_at_rest_in_its_posture_nothing_is_held(robot):
+    dynamics = home(robot)
+    assert_close(hold_posture(robot, dynamics, dynamics.state.q[7:]), np.zeros(robot.na), 0.0)
+
+
+def test_springs_reach_the_torque_limit_at_three_tenths_of_a_radian(robot):
+    dynamics = home(robot)
+    torque = hold_posture(robot, dynamics, dynamics.state.q[7:] + 0.3)
+    assert_close(torque, robot.effort_limit, 1e-9)
+
+
+def test_dampers_act_against_the_joint_rates(robot, rng):
+    dynamics = swaying(robot, rng)
+    torque = hold_posture(robot, dynamics, dynamics.state.q[7:])
+    assert_close(torque, -robot.effort_limit / 6.0 * dynamics.state.v[6:], 1e-9)
+
+
+def test_a_limp_robot_only_brakes_its_joints(robot, rng):
+    dynamics, memory = swaying(robot, rng), object()
+    output = limp(robot, dynamics, memory)
+    assert_close(output.torque, -robot.effort_limit / 6.0 * dynamics.state.v[6:], 1e-9)
+    assert not output.foot_wrench_admissible.any()
+    assert np.isnan(output.cop_desired).all()
+    assert output.failure is None
+    assert output.memory is memory
+
+
+@pytest.fixture
+def lost(robot):
+    """The answer to a state in which one foot would have to be in two places: Eq. 34 has no solution."""
+    dynamics = home(robot)
+    torn = dataclasses.replace(dynamics, sole_jacobian=dynamics.sole_jacobian.copy())
+    torn.sole_jacobian[1] = torn.sole_jacobian[0]
+    torn.sole_position[1, 2] += 0.01
+    controller = ComputedTorque(robot, 1e-3)
+    reference = goal(robot, home(robot))
+    posture = reference.posture + 0.1
+    reference = dataclasses.replace(reference, posture=posture)
+    memory = controller.initial_memory(torn)
+    return torn, reference, controller.compute(torn, reference, ComputedTorqueGains(), 0.0, memory)
+
+
+def test_a_program_without_a_solution_holds_the_posture(robot, lost):
+    dynamics, reference, output = lost
+    assert_close(output.torque, hold_posture(robot, dynamics, reference.posture), 0.0)
+    assert np.abs(output.torque).max() > 1.0
+
+
+def test_it_says_what_could_not_be_met_and_what_is_done_instead(lost):
+    _, _, output = lost
+    assert "cannot be met: " in output.failure
+    assert output.failure.endswith(HOLD_IN_WORDS)
+    assert not output.foot_wrench_admissible.any()
+
+
+@pytest.mark.parametrize("step", ["AccelerationProgram.solve", "Footing.share"])
+def test_whichever_program_fails_its_reason_is_passed_on(robot, step, monkeypatch):
+    def fails(*_):
+        raise SolverError("cannot be met: the thing")
+
+    owner, name = step.split(".")
+    monkeypatch.setattr(getattr(computed_torque, owner), name, fails)
+    dynamics = home(robot)
+    controller = ComputedTorque(robot, 1e-3)
+    output = controller.compute(
+        dynamics, goal(robot, dynamics), ComputedTorqueGains(), 0.0, controller.initial_memory(dynamics)
+    )
+    assert output.failure == f"cannot be met: the thing; {HOLD_IN_WORDS}"
+    assert_close(output.memory.angle, dynamics.state.q[7:], 0.0)
