@@ -29,6 +29,7 @@ class Tick:
         dynamics: the state at its start with everything computed.
         output: what the controller answered.
         step: what the world answered.
+        ground_height: height of the plane that CoP, CMP and capture point lie on, m.
     """
 
     robot: RobotModel
@@ -37,6 +38,7 @@ class Tick:
     dynamics: Dynamics
     output: ControlOutput
     step: Step
+    ground_height: float
 
 
 def observe(row: np.ndarray, at: dict[str, slice], tick: Tick) -> None:
@@ -47,7 +49,7 @@ def observe(row: np.ndarray, at: dict[str, slice], tick: Tick) -> None:
     """
     dynamics, output, step = tick.dynamics, tick.output, tick.step
     contact = sum_wrenches(step.foot_wrench, dynamics.sole_position, _WORLD_ORIGIN) + step.other_wrench
-    height = float(dynamics.sole_position[:, 2].min())
+    height = tick.ground_height
     row[at["time"]] = tick.time
     row[at["q"]] = dynamics.state.q
     row[at["v"]] = dynamics.state.v

@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 import pinocchio as pin
 
-from momentum_lab.control.controller import ControlOutput
+from momentum_lab.control.controller import Controller, ControlOutput
 from momentum_lab.control.fallback import limp
 from momentum_lab.control.gains import with_gains
 from momentum_lab.control.registry import controller_entry
@@ -64,6 +64,20 @@ class Session:
     Raises:
         InputError: the scenario names something that does not exist.
     """
+
+    # What changes while the session runs; everything else is decided when it begins.
+    state: State
+    pushes: tuple[Push, ...]
+    priority: float
+    controller: str
+    gains: Any
+    fall: Fall | None
+    solver_failures: int
+    last_failure: str | None
+    _controller: Controller
+    _memory: Any
+    _simulator: Simulator
+    _tick_of_run: int
 
     def __init__(
         self, scenario: Scenario, robot: RobotModel | None = None, capacity: int | None = None
@@ -143,7 +157,7 @@ class Session:
         observe(
             row,
             self.recording.slices,
-            Tick(self.robot, self.time, self.scenario.timestep, dynamics, output, step),
+            Tick(self.robot, self.time, self.scenario.timestep, dynamics, output, step, self._ground.height),
         )
         row[self.recording.slices["priority"]] = self.priority
         row[self.recording.slices["fallen"]] = self.fall is not None
@@ -197,16 +211,16 @@ class Session:
     def _select(self, name: str) -> None:
         entry = controller_entry(name)
         self.controller = name
-        self.gains: Any = entry.gains
+        self.gains = entry.gains
         self._controller = entry.make(self.robot, self.scenario.timestep)
 
     def _stand_up(self) -> None:
         """The robot where it started, the clock at zero."""
         self.state = self._start
         self.pushes = self._scripted
-        self.fall: Fall | None = None
+        self.fall = None
         self.solver_failures = 0
-        self.last_failure: str | None = None
+        self.last_failure = None
         self._tick_of_run = 0
         self._simulator = Simulator(self.robot, self._ground, self.scenario.timestep)
         self._memory = self._controller.initial_memory(self.dynamics)

@@ -95,9 +95,7 @@ class _GainPanel:
         self._folder = gui.add_folder("Gains", expand_by_default=False)
         with self._folder:
             self._sliders = {
-                gain.name: Bound[float](
-                    _slider(gui, gain, truth.gains[gain.name]), _setter(gain.name), post
-                )
+                gain.name: Bound[float](_slider(gui, gain, truth.gains[gain.name]), _setter(gain.name), post)
                 for gain in self._declared.values()
             }
         self._changed = gui.add_html("")

@@ -19,6 +19,7 @@ TITLE = (
     ".lab b{font-weight:600}.lab .n{font-variant-numeric:tabular-nums}"
     ".lab .dim{color:#6b6b6b}</style>"
 )
+_DASHED = ' stroke-dasharray="4 2.5"'
 BIG_NEXT = '<span class="lab-big"></span>'
 
 
@@ -62,12 +63,27 @@ def legend(keys: Iterable[str], explained: bool) -> str:
     for key in keys:
         style = STYLES[key]
         meaning = f' <span class="dim">{escape(style.help)}</span>' if explained else ""
-        name = escape(style.label)
+        name = f"<b>{escape(style.label)}</b>" if explained else escape(style.label)
         items.append(
             f'<span style="display:{"flex" if explained else "inline-flex"};align-items:center;gap:.35em;'
-            f'margin:.1em .8em .1em 0">{symbol(style)}<span><b>{name}</b>{meaning}</span></span>'
+            f'margin:.1em .8em .1em 0">{symbol(style)}<span>{name}{meaning}</span></span>'
         )
-    return f'<div class="lab" style="padding-top:.4em">{"".join(items)}</div>'
+    return f'<div class="lab" style="padding-top:.4em;font-size:.8em">{"".join(items)}</div>'
+
+
+def plot_title(title: str, lines: Iterable[tuple[str, str, bool]]) -> str:
+    """Title of a plot and its lines: name, colour, whether dashed; lines without a name are left out."""
+    items = "".join(
+        f'<span style="white-space:nowrap;margin-right:.8em"><svg width="16" height="8" viewBox="0 -4 16 8">'
+        f'<path d="M0 0H16" stroke="{color}" stroke-width="2.2"{_DASHED if dashed else ""}/></svg> '
+        f"{escape(name)}</span>"
+        for name, color, dashed in lines
+        if name
+    )
+    return (
+        f'<div class="lab" style="padding:.35em .75em .1em .75em;font-size:.8em"><b>{escape(title)}</b><br>'
+        f"{items}</div>"
+    )
 
 
 def symbol(style: MarkStyle) -> str:

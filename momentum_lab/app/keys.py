@@ -44,7 +44,11 @@ def add_keys(client: viser.ClientHandle, post: Post, push: PushPanel, status: St
         ("Help", "H", lambda: _show_help(client)),
     )
     for label, hotkey, act in keys:
-        client.gui.add_command(label, hotkey=hotkey).on_trigger(lambda _, act=act: act())
+        client.gui.add_command(label, hotkey=hotkey).on_trigger(_triggered(act))
+
+
+def _triggered(act: Callable[[], None]) -> Callable[[Any], None]:
+    return lambda _: act()
 
 
 def _show_help(client: viser.ClientHandle) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import viser
 
+from momentum_lab.app.label_scene import LabelScene, arrange
 from momentum_lab.app.marks import STYLES, MarkStyle
-from momentum_lab.app.overlays import Mark, Point
+from momentum_lab.app.overlays import Mark
 from momentum_lab.app.shapes import is_solid, solid
 
 # Less than this does not show, m.
@@ -19,9 +20,6 @@ _RADIUS = {"ball": 0.036, "ring": 0.026, "disc": 0.014}
 _POINT_RADIUS = 0.018
 _SHAFT = {"arrow": 0.011, "thin arrow": 0.005}
 _THICKNESS = {"line": 0.005, "bar": 0.02, "dashes": 0.004}
-# Marks whose label is more than their name, and marks whose name needs no label in the scene.
-_TEXT_ONLY = frozenset({"gap", "safe_border", "grf", "push"})
-_SILENT = frozenset({"support", "com_cmp", "foot_grf", "foot_cop"})
 
 
 class _Drawing(Protocol):
@@ -46,7 +44,7 @@ class MarkScene:
         self._client = client
         self._size = size
         self._drawings: dict[str, _Drawing] = {}
-        self._labels: dict[str, _Label] = {}
+        self._labels = LabelScene(client)
         self._points: dict[str, np.ndarray] = {}
 
     def draw(self, marks: list[Mark], shown: Collection[str], labels: bool) -> None:
@@ -60,19 +58,15 @@ class MarkScene:
         present = {mark.key: mark for mark in marks if mark.key in shown}
         for key, drawing in self._drawings.items():
             drawing.show(key in present)
-        for key, label in self._labels.items():
-            label.show(labels and key in present)
-        for key, mark in present.items():
+        for mark in present.values():
             self._draw_one(mark)
-            if labels:
-                self._draw_label(mark)
+        self._labels.draw(arrange(list(present.values()), self._size) if labels else [])
 
     def remove(self) -> None:
         """Take all marks out of the scene."""
         for key in self._drawings:
             self._client.scene.remove_by_name(f"/marks/{key}")
-        for key in self._labels:
-            self._client.scene.remove_by_name(f"/labels/{key}")
+        self._labels.remove()
 
     def _draw_one(self, mark: Mark) -> None:
         points = np.array(mark.points, dtype=np.float32)
@@ -84,43 +78,6 @@ class MarkScene:
             self._drawings[mark.key] = _drawing(self._client, STYLES[mark.key], points, self._size)
         else:
             self._drawings[mark.key].move(points)
-
-    def _draw_label(self, mark: Mark) -> None:
-        text = label_text(mark)
-        if not text:
-            return
-        if mark.key not in self._labels:
-            self._labels[mark.key] = _Label(self._client, STYLES[mark.key])
-        self._labels[mark.key].draw(text, mark.at or mark.points[0])
-
-
-def label_text(mark: Mark) -> str:
-    """What a mark's label in the scene says."""
-    if mark.key in _SILENT:
-        return ""
-    name = STYLES[mark.key].label
-    if mark.key in _TEXT_ONLY:
-        return f"{name} {mark.text}" if mark.key in {"grf", "push"} and mark.text else mark.text
-    return name
-
-
-class _Label:
-    """A name or a number next to a mark."""
-
-    def __init__(self, client: viser.ClientHandle, style: MarkStyle) -> None:
-        self._handle = client.scene.add_label(
-            f"/labels/{style.key}", "", anchor=style.anchor, font_screen_scale=0.9
-        )
-        self._at = np.full(3, np.nan)
-
-    def draw(self, text: str, at: Point) -> None:
-        self._handle.text = text
-        if not np.abs(self._at - at).max() < _SAME_PLACE:
-            self._at = np.array(at)
-            self._handle.position = at
-
-    def show(self, visible: bool) -> None:
-        self._handle.visible = visible
 
 
 def _drawing(client: viser.ClientHandle, style: MarkStyle, points: np.ndarray, size: float) -> _Drawing:

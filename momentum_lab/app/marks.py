@@ -68,7 +68,7 @@ class MarkStyle:
 _STYLES = (
     MarkStyle("com", "CoM", "ball", ORANGE, "Centre of mass.", "bottom-left"),
     MarkStyle(
-        "com_ground", "CoM on the ground", "ring", ORANGE, "The point straight below the CoM.", "bottom-right"
+        "com_ground", "CoM on ground", "ring", ORANGE, "The point straight below the CoM.", "bottom-right"
     ),
     MarkStyle("cop", "CoP", "diamond", BLUE, "Centre of pressure: where the ground pushes.", "top-right"),
     MarkStyle("foot_cop", "CoP of a foot", "disc", BLUE, "Where the ground pushes on one foot.", "top-right"),
@@ -118,7 +118,7 @@ _STYLES = (
         "From the CoP to the CMP: the lever with which the ground reaction force turns the body.",
         "top-left",
     ),
-    MarkStyle("support", "support polygon", "area", GREY, "The region that the CoP cannot leave."),
+    MarkStyle("support", "support polygon", "area", YELLOW, "The region that the CoP cannot leave."),
     MarkStyle(
         "safe_border",
         "safe border",

@@ -20,11 +20,15 @@ Point = tuple[float, float, float]
 # Marks on the ground lie in layers, so that none hides in another, m.
 _LAYER = {"support": 0.002, "safe_border": 0.003, "gap": 0.005, "com_ground": 0.006, "cop_granted": 0.007}
 _TOP_LAYER = 0.009
+_RAISED = np.array([0.0, 0.0, _TOP_LAYER])
 # A CoP and a CMP closer than this, in CoM heights, show no gap.
 _NO_GAP = 0.006
 # How long a push stays in the picture after its start, s; and its length for a force of one weight, in CoM heights.
 _PUSH_SHOWN = 1.0
 _PUSH_LENGTH = 1.4
+# Labels of lines on the ground sit beside them, on the side from which the lab looks first; in CoM heights.
+_BESIDE = 0.13
+_SIDE = np.array([0.47, -0.88])
 # A dash and a pause of the safe border, m.
 _DASH = 0.012
 
@@ -97,7 +101,9 @@ def _support(sample: Sample, picture: Picture, polygon: np.ndarray, ground: floa
         return []
     safe = polygon_of(sample, picture.robot, picture.safe_border)
     cop = sample["cop_measured"]
-    edge = _nearest_edge_point(cop, polygon)
+    edge = np.array(_nearest_edge_point(cop, polygon))
+    outward = (edge - cop) / max(float(np.linalg.norm(edge - cop)), 1e-9)
+    label = edge + 0.5 * _BESIDE * sample["com"][2] * outward
     margin = support_margin(cop, polygon)
     return [
         Mark("support", tuple(_on_ground("support", corner, ground) for corner in polygon.tolist())),
@@ -105,7 +111,7 @@ def _support(sample: Sample, picture: Picture, polygon: np.ndarray, ground: floa
             "safe_border",
             _dashes(safe, ground),
             text=f"{1e3 * margin:.0f} mm to the edge" if math.isfinite(margin) else "",
-            at=_on_ground("safe_border", edge, ground),
+            at=_on_ground("safe_border", label.tolist(), ground),
         ),
     ]
 
@@ -140,7 +146,7 @@ def _forces(sample: Sample, picture: Picture, ground: float) -> list[Mark]:
     cmp = np.append(sample["cmp"], ground + _TOP_LAYER)
     weights = net / (picture.robot.mass * GRAVITY)
     marks = [
-        Mark("foot_cop", tuple(_point(p + (0.0, 0.0, _TOP_LAYER)) for p in foot_cops)),
+        Mark("foot_cop", tuple(_point(p + _RAISED) for p in foot_cops)),
         Mark(
             "foot_grf",
             tuple(
@@ -159,9 +165,8 @@ def _forces(sample: Sample, picture: Picture, ground: float) -> list[Mark]:
     ]
     gap = float(np.linalg.norm((cmp - cop)[:2]))
     if gap > _NO_GAP * (com[2] - ground) and weights[2] > NO_FORCE:
-        middle = 0.5 * (cop + cmp)
         text = f"rate of angular momentum {gap * net[2]:.0f} N m"
-        marks.append(Mark("gap", (_point(cop), _point(cmp)), text=text, at=_point(middle)))
+        marks.append(Mark("gap", (_point(cop), _point(cmp)), text=text, at=_beside(cop, cmp, com[2])))
     return marks
 
 
@@ -189,6 +194,17 @@ def _push(sample: Sample, picture: Picture, ground: float) -> list[Mark]:
 def _metres_per_newton(sample: Sample, picture: Picture, ground: float) -> float:
     """So that the weight of the standing robot reaches from the ground to its CoM."""
     return picture.arrow_scale * (sample["com"][2] - ground) / (picture.robot.mass * GRAVITY)
+
+
+def _beside(start: np.ndarray, end: np.ndarray, size: float) -> Point:
+    """A place for the label of a line on the ground: across from its middle."""
+    x, y, _ = (end - start) / np.linalg.norm(end - start)
+    across = np.array([-y, x])
+    if across @ _SIDE < 0.0:
+        across = -across
+    middle = 0.5 * (start + end)
+    middle[:2] += _BESIDE * size * across
+    return _point(middle)
 
 
 def _dashes(polygon: np.ndarray, ground: float) -> tuple[Point, ...]:

@@ -60,7 +60,9 @@ class Panels:
             ViewPanel(gui, self.settings, look)
         plots = gui.add_panel()
         with plots.add_tab("Plots", viser.Icon.CHART_LINE):
-            gui.add_html(html.legend([key for key in STYLES if key in PRESETS[START_PRESET]], explained=False))
+            gui.add_html(
+                html.legend([key for key in STYLES if key in PRESETS[START_PRESET]], explained=False)
+            )
             self.plots = Plots(gui)
         plots.dock_left()
         plots.set_width(_LEFT)

@@ -41,6 +41,8 @@ class Playback:
         self.run = 0
         self.speed = 1.0
         self.playing = True
+        self.stopped: str | None = None
+        self._waiting: list[SessionEvent] = []
         self._begin(scenario)
 
     @property
@@ -128,8 +130,8 @@ class Playback:
         robot = old.robot if old is not None and old.scenario.robot == scenario.robot else None
         session = Session(scenario, robot, capacity=round(_MEMORY / scenario.timestep))
         self.session = session
-        self._waiting: list[SessionEvent] = []
-        self.stopped: str | None = None
+        self._waiting.clear()
+        self.stopped = None
         self.playing = True
         self.run += 1
         self.tick(1)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import viser
 
+from momentum_lab.app import html
 from momentum_lab.app.marks import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLES, Color
 from momentum_lab.app.series import WINDOW, Curves, History
 from momentum_lab.recording import Layout
@@ -17,7 +18,8 @@ from momentum_lab.robot.model import RobotModel
 
 # How often the plots are drawn, s.
 _PERIOD = 0.1
-_HEIGHT = 172
+_HEIGHT = 106
+_AXIS = {"font": "10px sans-serif", "gap": 2, "ticks": {"size": 3}}
 _POINTS = ("com", "cop", "cmp", "capture")
 # What is asked for is grey and dashed, what the ground may give blue, what it gave green like the GRF.
 _KINDS: dict[str, tuple[Color, list[int]]] = {
@@ -44,12 +46,14 @@ class Plots:
             gui,
             "Points along the push (cm)",
             [_line(STYLES[name].label, STYLES[name].color) for name in _POINTS]
-            + [_line("support", GREY, dash=[3, 3]), _line("", GREY, dash=[3, 3])],
+            + [_line("support", GREY, [3, 3]), _line("", GREY, [3, 3])],
             soft=12.0,
             bands=({"series": (6, 5), "fill": "rgba(110,110,110,0.10)"},),
         )
         self._linear = _plot(gui, "Rate of linear momentum along the push (N)", _rates(), soft=60.0)
-        self._angular = _plot(gui, "Rate of angular momentum about the axis across (N m)", _rates(), soft=30.0)
+        self._angular = _plot(
+            gui, "Rate of angular momentum about the axis across (N m)", _rates(), soft=30.0
+        )
         self._momenta = _plot(
             gui,
             "Momentum: linear (N s), angular (kg m²/s)",
@@ -123,8 +127,8 @@ def _plot(
     bands: tuple[Any, ...] | None = None,
 ) -> Any:
     """A plot whose y axis shows at least from -soft to soft, and a column wherever a push acts."""
+    gui.add_html(html.plot_title(title, [(line["label"], line["stroke"], "dash" in line) for line in lines]))
     push = {
-        "label": "push",
         "scale": "push",
         "stroke": "rgba(0,0,0,0)",
         "fill": _css(BLACK, 0.16),
@@ -136,15 +140,14 @@ def _plot(
     return gui.add_uplot(
         (np.array([0.0, WINDOW]), *(nothing for _ in lines), nothing),
         ({}, *lines, push),  # type: ignore[arg-type]
-        title=title,
         bands=bands,
         scales={
             "x": {"time": False},
             "y": {"range": {"min": {**limit, "soft": -soft}, "max": {**limit, "soft": soft}}},  # type: ignore[typeddict-item]
             "push": {"range": (0.0, 1.0)},
         },
-        axes=({"size": 26, "font": "10px sans-serif"}, {"size": 42, "font": "10px sans-serif"}),  # type: ignore[typeddict-item]
-        legend={"show": True, "live": False},
+        axes=({**_AXIS, "size": 20}, {**_AXIS, "size": 36}),  # type: ignore[typeddict-item]
+        legend={"show": False},
         height=_HEIGHT,
         padding=(4, 10, 0, 0),
     )

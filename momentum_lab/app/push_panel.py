@@ -48,11 +48,11 @@ class PushPanel:
         gui.add_html(html.BIG_NEXT)
         self.button = gui.add_button("Push  (P)", color=(213, 94, 0), icon=viser.Icon.HAND_MOVE)
         self._size = gui.add_html("")
-        self._force = gui.add_slider("force (N)", 0.0, 500.0, 1.0, 200.0, hint="Peak force of the push.")
+        self._force: Any = gui.add_slider("force (N)", 0.0, 500.0, 1.0, 200.0, hint="Peak force of the push.")
         self._duration = gui.add_slider(
             "duration (ms)", 10.0, 1000.0, 10.0, _DURATION, hint="How long the push lasts."
         )
-        self._direction = gui.add_slider(
+        self._direction: Any = gui.add_slider(
             "direction (°)",
             -180.0,
             180.0,
@@ -75,7 +75,7 @@ class PushPanel:
             disabled=True,
             hint="Height of the push's line of action above the ground.",
         )
-        self._shape = gui.add_dropdown(
+        self._shape: Any = gui.add_dropdown(
             "shape", ("rectangle", "half-sine"), hint="How the force runs over time."
         )
         self.repeat = gui.add_button("Repeat the last push", color="gray", icon=viser.Icon.REPEAT)

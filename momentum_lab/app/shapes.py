@@ -77,7 +77,10 @@ def _hollow_square() -> trimesh.Trimesh:
     offset = 0.5 * (side - thin)
     bars = []
     for sign in (-1.0, 1.0):
-        for size, at in (((side, thin, 0.5), (0.0, sign * offset)), ((thin, side, 0.5), (sign * offset, 0.0))):
+        for size, at in (
+            ((side, thin, 0.5), (0.0, sign * offset)),
+            ((thin, side, 0.5), (sign * offset, 0.0)),
+        ):
             bar = trimesh.creation.box(size)
             bar.apply_translation((*at, 0.0))
             bars.append(bar)

@@ -17,8 +17,10 @@ from momentum_lab.status import Status
 INVITATION = "Push the robot: press P or the button."
 SMALL_STEP, LARGE_STEP = 1, 20
 _SPEEDS = {"1/8": 0.125, "1/4": 0.25, "1/2": 0.5, "1": 1.0}
+_DIRECTIONS = {0: "forward", 90: "to the left", 180: "backward", 270: "to the right"}
 # A status that says more than "standing" stays readable for this long, s.
 _READABLE = 0.9
+_PASSING = frozenset({"border", "lifted", "solver"})
 # How often the figures change, s.
 _PERIOD = 0.1
 
@@ -32,9 +34,7 @@ class StatusBar:
         clock: seconds, for tests.
     """
 
-    def __init__(
-        self, gui: viser.GuiApi, post: Post, clock: Callable[[], float] = time.monotonic
-    ) -> None:
+    def __init__(self, gui: viser.GuiApi, post: Post, clock: Callable[[], float] = time.monotonic) -> None:
         self._post, self._clock = post, clock
         self._playing = True
         self._shown: Status | None = None
@@ -44,7 +44,7 @@ class StatusBar:
         gui.add_html(html.TITLE)
         self._status = gui.add_html(html.status_line("standing", "standing", "green"))
         self._time = gui.add_html("")
-        self._invitation = gui.add_html(html.sentence(INVITATION))
+        self._sentence = gui.add_html(html.sentence(INVITATION))
         self._stand_up = gui.add_button(
             "Stand up again  (R)", color=(0, 114, 178), icon=viser.Icon.ARROW_UP, visible=False
         )
@@ -81,8 +81,9 @@ class StatusBar:
         self._write("status", self._status, html.status_line(status.kind, status.words, status.color))
         line = html.time_line(simulated, truth.real_time_factor, truth.speed, truth.playing)
         self._write("time", self._time, line)
-        self._invitation.visible = truth.push is None and truth.fall is None
-        self._stand_up.visible = truth.fall is not None or truth.stopped is not None
+        down = truth.fall is not None or truth.stopped is not None
+        self._write("sentence", self._sentence, html.sentence(_sentence(truth)))
+        self._sentence.visible, self._stand_up.visible = not down, down
 
     def end(self) -> None:
         """Say that the session's process has gone."""
@@ -93,10 +94,9 @@ class StatusBar:
     def _readable(self, status: Status, now: float, playing: bool) -> Status:
         """The status, or one that has not been readable long enough yet."""
         shown = self._shown
-        calm = status.kind == "standing"
-        if playing and calm and shown is not None and shown.kind in {"border", "lifted", "solver"}:
-            if now - self._since < _READABLE:
-                return shown
+        held = shown is not None and shown.kind in _PASSING and now - self._since < _READABLE
+        if shown is not None and held and playing and status.kind == "standing":
+            return shown
         self._shown, self._since = status, now
         return status
 
@@ -111,3 +111,13 @@ class StatusBar:
     def _write(self, name: str, handle: viser.GuiHtmlHandle, content: str) -> None:
         if self._texts.get(name) != content:
             self._texts[name] = handle.content = content
+
+
+def _sentence(truth: Truth) -> str:
+    """What to do before the first push, what was done after it."""
+    push = truth.push
+    if push is None:
+        return INVITATION
+    towards = _DIRECTIONS.get(round(push.direction_deg) % 360, f"{push.direction_deg:.0f}° from forward")
+    where = "" if push.body is None else f" on the {push.body.replace('_', ' ')}"
+    return f"Last push: {push.force or 0.0:.0f} N for {1e3 * push.duration:.0f} ms {towards}{where}."

@@ -12,6 +12,7 @@ from momentum_lab.recording import Sample
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.status import carrying_feet
 
+
 def sole_placement(sample: Sample, foot: int) -> pin.SE3:
     """Where a sole frame is in the world."""
     return pin.XYZQUATToSE3(sample["sole_pose"][foot])
@@ -25,9 +26,7 @@ def polygon_of(sample: Sample, robot: RobotModel, border: float = 0.0) -> np.nda
         robot: whose soles they are.
         border: width of the border, m.
     """
-    corners = [
-        _corners_in_world(sample, robot, foot, border) for foot in carrying_feet(sample, robot.mass)
-    ]
+    corners = [_corners_in_world(sample, robot, foot, border) for foot in carrying_feet(sample, robot.mass)]
     return support_polygon(np.concatenate(corners)) if corners else np.zeros((0, 2))
 
 

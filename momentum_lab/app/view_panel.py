@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import viser
 
@@ -57,12 +58,12 @@ class ViewPanel:
         )
         see_through.on_update(lambda event: self._set("see_through", event.target.value))
         with gui.add_folder("Each mark", expand_by_default=False):
-            self._switches = {
+            self._switches: dict[str, Any] = {
                 key: gui.add_checkbox(style.label, key in settings.shown, hint=style.help)
                 for key, style in STYLES.items()
             }
         for key, switch in self._switches.items():
-            switch.on_update(lambda event, key=key: self._switch(key, event.target.value))
+            switch.on_update(self._switched(key))
         gui.add_html(html.legend(STYLES, explained=True))
 
     def _preset(self, name: str) -> None:
@@ -73,9 +74,15 @@ class ViewPanel:
         self._settings.shown = set(PRESETS[name])
         self._settings.changed = True
 
-    def _switch(self, key: str, on: bool) -> None:
-        self._settings.shown = (self._settings.shown | {key}) if on else (self._settings.shown - {key})
-        self._settings.changed = True
+    def _switched(self, key: str) -> Callable[[Any], None]:
+        """What happens when the switch of one mark moves."""
+
+        def switch(event: Any) -> None:
+            shown = self._settings.shown
+            self._settings.shown = shown | {key} if event.target.value else shown - {key}
+            self._settings.changed = True
+
+        return switch
 
     def _scale(self, name: str) -> None:
         self._set("arrow_scale", _TIMES.get(name, 1.0))

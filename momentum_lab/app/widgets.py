@@ -34,7 +34,7 @@ class Bound(Generic[Value]):
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.handle = handle
-        self._event = event
+        self._event: Callable[[Value], Event] = event
         self._post = post
         self._clock = clock
         self._touched = -math.inf

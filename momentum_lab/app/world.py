@@ -81,9 +81,7 @@ def look(client: viser.ClientHandle, view: View, size: float, center: np.ndarray
     client.camera.look_at = target
 
 
-def camera_pose(
-    view: View, size: float, center: np.ndarray, aspect: float
-) -> tuple[np.ndarray, np.ndarray]:
+def camera_pose(view: View, size: float, center: np.ndarray, aspect: float) -> tuple[np.ndarray, np.ndarray]:
     """Target and position (3,) of a camera that sees everything a view wants to show.
 
     Args:

@@ -42,7 +42,8 @@ class StagedTick:
         self._controller = entry.make(robot, self.timestep)
         self._gains = entry.gains
         self._memory = self._controller.initial_memory(home)
-        self._simulator = Simulator(robot, Ground.level(feet, robot.spec.friction), self.timestep)
+        self._ground = Ground.level(feet, robot.spec.friction)
+        self._simulator = Simulator(robot, self._ground, self.timestep)
         self._recording = Recording(Layout.of(robot), _KEPT)
         self._ticks = 0
 
@@ -62,7 +63,7 @@ class StagedTick:
         step = self._simulator.step(dynamics, output.torque, self.pushes, self.time)
         moved = perf_counter()
         row = self._recording.next_row()
-        tick = Tick(self.robot, self.time, self.timestep, dynamics, output, step)
+        tick = Tick(self.robot, self.time, self.timestep, dynamics, output, step, self._ground.height)
         observe(row, self._recording.slices, tick)
         recorded = perf_counter()
         self._memory, self.state = output.memory, step.state

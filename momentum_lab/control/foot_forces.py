@@ -10,16 +10,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from momentum_lab.control.qp import QuadraticProgram, solve
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.support import inset_rectangle, support_polygon
-from momentum_lab.momentum.wrench import skew
+from momentum_lab.momentum.wrench import cross, shift_wrench, skew
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
+_COM = np.zeros(3)
 _FACETS = 8
 # Stage 1: weights of the angular rate against the force, and of small forces against both.
 _ANGULAR_WEIGHT = 0.02
@@ -94,13 +96,10 @@ class Footing:
 
     def safe_polygon(self, dynamics: Dynamics, stance: tuple[int, ...], border: float) -> np.ndarray:
         """Support polygon of the stance soles without a border (m), counter-clockwise (K, 2), m."""
-        corners = []
-        for foot in stance:
-            lower, upper = inset_rectangle(self.soles[foot].lower, self.soles[foot].upper, border)
-            rectangle = np.array(
-                [[lower[0], lower[1]], [upper[0], lower[1]], [upper[0], upper[1]], [lower[0], upper[1]]]
-            )
-            corners.append(dynamics.sole_position[foot] + rectangle @ dynamics.sole_rotation[foot][:, :2].T)
+        corners = [
+            dynamics.sole_position[foot] + self._safe_corners(foot, border) @ dynamics.sole_rotation[foot].T
+            for foot in stance
+        ]
         return support_polygon(np.concatenate(corners))
 
     def stance_feet(self, dynamics: Dynamics, stance: tuple[int, ...], border: float) -> list[StanceFoot]:
@@ -112,6 +111,11 @@ class Footing:
             to_ankle = dynamics.sole_position[foot] + rotation @ ankle - dynamics.com_in_world
             feet.append(StanceFoot(foot, to_ankle, rotation, lower - ankle[:2], upper - ankle[:2], ankle))
         return feet
+
+    def _safe_corners(self, foot: int, border: float) -> np.ndarray:
+        """Corners of the safe rectangle in the sole frame (4, 3), m."""
+        (rear, right), (front, left) = inset_rectangle(self.soles[foot].lower, self.soles[foot].upper, border)
+        return np.array(((rear, right, 0.0), (front, right, 0.0), (front, left, 0.0), (rear, left, 0.0)))
 
     def share(
         self, feet: list[StanceFoot], force: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds
@@ -140,13 +144,11 @@ class Footing:
         wrench = np.zeros((len(self.soles), 6))
         rate = np.array([0.0, 0.0, -self.mass * GRAVITY, 0.0, 0.0, 0.0])
         for foot, force, (x, y, normal) in zip(feet, forces, sole_moments, strict=True):
-            from_ankle = foot.rotation @ np.array([x, y, -foot.ankle_in_sole[2]])
-            from_sole = from_ankle + foot.rotation @ foot.ankle_in_sole
-            twist = normal * foot.rotation[:, 2]
-            wrench[foot.index, :3] = force
-            wrench[foot.index, 3:] = np.cross(from_sole, force) + twist
-            rate[:3] += force
-            rate[3:] += np.cross(foot.com_to_ankle + from_ankle, force) + twist
+            com_to_cop = foot.com_to_ankle + foot.rotation @ np.array((x, y, -foot.ankle_in_sole[2]))
+            com_to_sole = foot.com_to_ankle - foot.rotation @ foot.ankle_in_sole
+            at_cop = np.concatenate((force, normal * foot.rotation[:, 2]))
+            wrench[foot.index] = shift_wrench(at_cop, com_to_cop, com_to_sole)
+            rate += shift_wrench(at_cop, com_to_cop, _COM)
         return FootForces(wrench, rate)
 
     def _labels(self, feet: list[StanceFoot]) -> tuple[tuple[int, str], ...]:
@@ -162,7 +164,7 @@ def _single_cop(
 ) -> np.ndarray:
     """CoP offset from the ankle and normal moment (1, 3) of the only foot: Eqs. 40, 41 in sole axes, clipped."""
     local = foot.rotation.T @ force
-    moment = foot.rotation.T @ (angular_rate - np.cross(foot.com_to_ankle, force))
+    moment = foot.rotation.T @ (angular_rate - cross(foot.com_to_ankle, force))
     fx, fy, fn = local.tolist()
     height = foot.ankle_in_sole[2]
     x = min(max((-moment[1] - height * fx) / fn, foot.lower[0]), foot.upper[0])
@@ -187,20 +189,27 @@ def _forces(
     count = len(feet)
     levers = np.hstack([skew(foot.com_to_ankle) for foot in feet])
     weight = _ANGULAR_WEIGHT**2
-    hessian = np.tile(np.eye(3), (count, count)) + weight * levers.T @ levers
-    hessian.flat[:: 3 * count + 1] += _SMALL_FORCE_WEIGHT**2
-    gradient = -np.tile(force, count) - weight * angular_rate @ levers
+    hessian = weight * (levers.T @ levers) + _summing(count)
+    gradient = -(weight * (angular_rate @ levers))
+    gradient -= np.concatenate((force,) * count)
     rows = _FACETS + 1
-    matrix = np.zeros((count * rows, 3 * count))
+    matrix, upper = np.zeros((count * rows, 3 * count)), np.zeros(count * (3 + rows))
     pyramid = _pyramid(bounds.friction)
     for i, foot in enumerate(feet):
         matrix[i * rows : (i + 1) * rows, 3 * i : 3 * i + 3] = pyramid @ foot.rotation.T
-    upper = np.full(3 * count + count * rows, np.inf)
-    upper[3 * count :] = np.tile(np.append(np.zeros(_FACETS), -bounds.least_force), count)
+    upper[: 3 * count] = np.inf
+    upper[3 * count + _FACETS :: rows] = -bounds.least_force
     problem = QuadraticProgram(hessian, gradient, matrix, np.full(upper.size, -np.inf), upper, labels)
     return solve(problem).x.reshape(count, 3)
 
 
+@lru_cache(maxsize=8)
+def _summing(count: int) -> np.ndarray:
+    """Quadratic form |sum f_i|^2 + e^2 sum |f_i|^2 (3 count, 3 count)."""
+    return np.tile(np.eye(3), (count, count)) + _SMALL_FORCE_WEIGHT**2 * np.eye(3 * count)
+
+
+@lru_cache(maxsize=64)
 def _pyramid(friction: float) -> np.ndarray:
     """Rows n with n . f <= 0 inside a pyramid within the friction cone, then one with -f_n (facets + 1, 3)."""
     angle = 2.0 * math.pi * np.arange(_FACETS) / _FACETS
@@ -224,15 +233,16 @@ def _cops(
     for i, (foot, force) in enumerate(zip(feet, forces, strict=True)):
         turned = -skew(force) @ foot.rotation
         at = slice(3 * i, 3 * i + 3)
-        levers[:, at] = np.column_stack([turned[:, :2], foot.rotation[:, 2]])
+        levers[:, at] = turned
+        levers[:, 3 * i + 2] = foot.rotation[:, 2]
         height = foot.ankle_in_sole[2]
-        remaining -= np.cross(foot.com_to_ankle, force) - height * turned[:, 2]
+        remaining -= cross(foot.com_to_ankle, force) - height * turned[:, 2]
         fx, fy, fn = (foot.rotation.T @ force).tolist()
         limit = bounds.normal_moment * fn
         lower[at] = foot.lower[0], foot.lower[1], -limit
         upper[at] = foot.upper[0], foot.upper[1], limit
         easy[at] = -height * fx / fn, -height * fy / fn, 0.0
-    cost = np.tile(np.array([_COP_SHIFT_WEIGHT, _COP_SHIFT_WEIGHT, _NORMAL_MOMENT_WEIGHT]) ** 2, count)
+    cost = np.array((_COP_SHIFT_WEIGHT, _COP_SHIFT_WEIGHT, _NORMAL_MOMENT_WEIGHT) * count) ** 2
     hessian = levers.T @ levers
     hessian.flat[:: 3 * count + 1] += cost
     gradient = -remaining @ levers - cost * easy

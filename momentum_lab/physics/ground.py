@@ -38,6 +38,11 @@ class Ground:
     under_feet: tuple[Patch, ...]
     floor: Patch
 
+    @property
+    def height(self) -> float:
+        """Height of the plane that the net CoP is measured on, m."""
+        return float(self.floor.origin[2])
+
     @classmethod
     def level(cls, feet: int, friction: float, height: float = 0.0) -> Ground:
         """One level plane at a height (m) under everything."""

@@ -11,6 +11,7 @@ import numpy as np
 import pinocchio as pin
 
 from momentum_lab.errors import InputError
+from momentum_lab.momentum.wrench import cross
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -140,8 +141,8 @@ def apply_pushes(
             robot.model, data, dynamics.state.q, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
         )
         lever = point - data.oMf[frame].translation
-        wrench += np.concatenate([force, np.cross(point, force)])
-        generalized += jacobian.T @ np.concatenate([force, np.cross(lever, force)])
+        wrench += np.concatenate([force, cross(point, force)])
+        generalized += jacobian.T @ np.concatenate([force, cross(lever, force)])
     return AppliedPush(wrench, generalized)
 
 

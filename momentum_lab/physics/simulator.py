@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from momentum_lab.momentum.ground import GRAVITY
+from momentum_lab.momentum.wrench import shift_wrench, sum_wrenches
 from momentum_lab.physics.contact import Contacts, solve_contact
 from momentum_lab.physics.ground import Ground
 from momentum_lab.physics.push import AppliedPush, Push, apply_pushes
@@ -13,7 +15,7 @@ from momentum_lab.physics.touch import BodyPoints, Touch, sole_touches
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
 
-GRAVITY = 9.81
+_WORLD_ORIGIN = np.zeros(3)
 # A joint that has passed its limit is brought back with this time constant, s.
 _LIMIT_TIME = 0.01
 # No motor presses its joint further than this beyond the limit, rad.
@@ -68,9 +70,8 @@ class Simulator:
         torque = np.clip(torque, -self.robot.effort_limit, self.robot.effort_limit)
         push = apply_pushes(self.robot, self._push_data, dynamics, pushes, time, self.timestep)
         mass_matrix, force = self._free_motion(dynamics, torque, push)
-        soles = sole_touches(self.robot, dynamics, self.ground)
-        bodies = self._bodies.touches(dynamics.state, self.ground.floor)
-        touching = [touch for touch in soles if touch is not None] + bodies
+        touching = sole_touches(self.robot, dynamics, self.ground)
+        touching += self._bodies.touches(dynamics.state, self.ground.floor)
         solution = solve_contact(
             mass_matrix,
             self.timestep * force,
@@ -81,8 +82,12 @@ class Simulator:
         q = self.robot.integrate(dynamics.state.q, self.timestep * solution.velocity)
         state = State(q, solution.velocity)
         self._bodies.follow(state)
-        forces = _forces_per_touch(touching, solution.impulse / self.timestep)
-        return self._account(dynamics, state, torque, push, soles, touching, forces)
+        feet, others = self._contact_wrenches(dynamics, touching, solution.impulse / self.timestep)
+        pushed = np.zeros(6) if push is None else push.wrench
+        rate = sum_wrenches(feet, dynamics.sole_position, dynamics.com_in_world)
+        rate += shift_wrench(others + pushed, _WORLD_ORIGIN, dynamics.com_in_world)
+        rate[2] -= self.robot.mass * GRAVITY
+        return Step(state, torque, feet, others, pushed, rate)
 
     def _free_motion(
         self, dynamics: Dynamics, torque: np.ndarray, push: AppliedPush | None
@@ -113,33 +118,24 @@ class Simulator:
         force[rows] -= stiffness * excess[beyond] + (damping + dt * stiffness) * dynamics.state.v[rows]
         return mass_matrix, force
 
-    def _account(
-        self,
-        dynamics: Dynamics,
-        state: State,
-        torque: np.ndarray,
-        push: AppliedPush | None,
-        soles: list[Touch | None],
-        touching: list[Touch],
-        forces: list[np.ndarray],
-    ) -> Step:
-        """Who pushed whom: wrenches per foot, of the other bodies, and their sum about the CoM (Eqs. 1, 2)."""
-        by_touch = {id(touch): force for touch, force in zip(touching, forces, strict=True)}
-        foot_wrench = np.zeros((len(soles), 6))
-        other_wrench = np.zeros(6)
-        rate = np.zeros(6)
-        rate[2] = -self.robot.mass * GRAVITY
-        for foot, touch in enumerate(soles):
-            if touch is not None:
-                force = by_touch.pop(id(touch))
-                foot_wrench[foot] = _wrench_about(dynamics.sole_position[foot], touch.position, force)
-                rate += _wrench_about(dynamics.com_in_world, touch.position, force)
+    def _contact_wrenches(
+        self, dynamics: Dynamics, touching: list[Touch], forces: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Ground on each foot about its sole (F, 6), and on all else about the world origin (6,).
+
+        `forces` (n, 3) are those on all touching points in their order, in the axes of their planes.
+        """
+        feet, others = np.zeros((len(self.robot.soles), 6)), np.zeros(6)
+        first = 0
         for touch in touching:
-            if id(touch) in by_touch:
-                other_wrench += _wrench_about(np.zeros(3), touch.position, by_touch[id(touch)])
-        push_wrench = np.zeros(6) if push is None else push.wrench
-        rate += _moved_to(dynamics.com_in_world, other_wrench + push_wrench)
-        return Step(state, torque, foot_wrench, other_wrench, push_wrench, rate)
+            last = first + touch.gap.size
+            force = forces[first:last] @ touch.patch.rotation.T
+            if touch.foot is None:
+                others += _wrench_about(_WORLD_ORIGIN, touch.position, force)
+            else:
+                feet[touch.foot] = _wrench_about(dynamics.sole_position[touch.foot], touch.position, force)
+            first = last
+        return feet, others
 
 
 def _together(touching: list[Touch], nv: int) -> Contacts:
@@ -152,25 +148,8 @@ def _together(touching: list[Touch], nv: int) -> Contacts:
     )
 
 
-def _forces_per_touch(touching: list[Touch], forces: np.ndarray) -> list[np.ndarray]:
-    """Forces on the points of each touch in world axes (n, 3), N."""
-    found, first = [], 0
-    for touch in touching:
-        last = first + touch.gap.size
-        found.append(forces[first:last] @ touch.patch.rotation.T)
-        first = last
-    return found
-
-
 def _wrench_about(origin: np.ndarray, position: np.ndarray, force: np.ndarray) -> np.ndarray:
     """Sum of forces (n, 3) at points (n, 3) about an origin (6,)."""
     arm = position - origin
     moment = arm[:, (1, 2, 0)] * force[:, (2, 0, 1)] - arm[:, (2, 0, 1)] * force[:, (1, 2, 0)]
     return np.concatenate([force.sum(0), moment.sum(0)])
-
-
-def _moved_to(point: np.ndarray, wrench: np.ndarray) -> np.ndarray:
-    """A wrench about the world origin, about another point (6,)."""
-    moved = wrench.copy()
-    moved[3:] -= np.cross(point, wrench[:3])
-    return moved

@@ -26,20 +26,23 @@ class Touch:
         jacobian: their velocities in the axes of the plane, normal last (3 n, nv).
         gap: their heights above the plane (n,), m.
         patch: the plane.
+        foot: which foot it is; None for every other body.
     """
 
     position: np.ndarray
     jacobian: np.ndarray
     gap: np.ndarray
     patch: Patch
+    foot: int | None = None
 
 
-def sole_touches(robot: RobotModel, dynamics: Dynamics, ground: Ground) -> list[Touch | None]:
-    """Per foot its four corners, or None while the whole foot is clear of the ground."""
-    return [
+def sole_touches(robot: RobotModel, dynamics: Dynamics, ground: Ground) -> list[Touch]:
+    """The four corners of each foot that is not wholly clear of the ground."""
+    touches = (
         _sole_touch(sole.corners, dynamics, foot, ground.under_feet[foot])
         for foot, sole in enumerate(robot.soles)
-    ]
+    )
+    return [touch for touch in touches if touch is not None]
 
 
 def _sole_touch(corners: np.ndarray, dynamics: Dynamics, foot: int, patch: Patch) -> Touch | None:
@@ -48,7 +51,7 @@ def _sole_touch(corners: np.ndarray, dynamics: Dynamics, foot: int, patch: Patch
     gap = patch.gap(position)
     if gap.min() > _MARGIN:
         return None
-    return Touch(position, _point_jacobian(arms, dynamics.sole_jacobian[foot], patch), gap, patch)
+    return Touch(position, _point_jacobian(arms, dynamics.sole_jacobian[foot], patch), gap, patch, foot)
 
 
 def _point_jacobian(arms: np.ndarray, jacobian: np.ndarray, patch: Patch) -> np.ndarray:
