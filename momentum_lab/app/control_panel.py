@@ -55,7 +55,7 @@ class ControlPanel:
             SelectController,
             post,
         )
-        gui.add_html(html.sentence("When the ground cannot give both momentum rates, keep:"))
+        gui.add_html(html.sentence("When the ground cannot give both momentum rates:"))
         self._priority: Bound[float] = Bound(
             gui.add_slider(
                 "priority",
@@ -63,13 +63,13 @@ class ControlPanel:
                 1.0,
                 0.01,
                 truth.priority,
-                marks=((0.0, "hold the CoM"), (1.0, "hold the posture")),
                 hint="0 keeps linear momentum: the CoP moves and the body turns. 1 keeps angular momentum: "
                 "the force tilts and the CoM moves.",
             ),
             SetPriority,
             post,
         )
+        gui.add_html(html.slider_ends("hold the CoM", "hold the posture"))
         self._gains: _GainPanel = _GainPanel(gui, post, truth)
 
     def follow(self, truth: Truth) -> None:

@@ -17,6 +17,7 @@ TITLE = (
     "<style>div:has(>.lab-big)+* button{height:3.1em!important;font-size:1.15em!important}"
     ".lab{padding:0 .75em .5em .75em;font-size:.875em;line-height:1.4}"
     ".lab b{font-weight:600}.lab .n{font-variant-numeric:tabular-nums}"
+    ".lab.small{padding:.3em .75em .1em .75em;font-size:.78em;line-height:1.3}"
     ".lab .dim{color:#6b6b6b}</style>"
 )
 _DASHED = ' stroke-dasharray="4 2.5"'
@@ -36,12 +37,18 @@ def status_line(kind: str, words: str, color: str) -> str:
 
 def time_line(time: float, real_time_factor: float, speed: float, playing: bool) -> str:
     """Simulated time and how it runs, in figures that do not change their width."""
-    if not playing:
-        pace = "paused"
-    else:
-        asked = "" if speed == 1.0 else f" (asked for {speed:g})"
-        pace = f"{real_time_factor:.2f} × real time{asked}"
-    return f'<div class="lab n dim">simulated time <b>{time:.2f} s</b> · {pace}</div>'
+    asked = "" if speed == 1.0 else f" · speed {speed:g}"
+    pace = f"{real_time_factor:.2f} × real time" if playing else "paused"
+    return f'<div class="lab n dim">simulated time <b>{time:.2f} s</b> · {pace}{asked}</div>'
+
+
+def slider_ends(low: str, high: str) -> str:
+    """Words at the ends of the slider above."""
+    return (
+        '<div class="lab dim" style="display:flex;justify-content:space-between;'
+        f'padding:0 4.6em .4em 8.2em;margin-top:-.3em;font-size:.8em"><span>◂ {escape(low)}</span>'
+        f"<span>{escape(high)} ▸</span></div>"
+    )
 
 
 def sentence(words: str) -> str:
@@ -68,7 +75,7 @@ def legend(keys: Iterable[str], explained: bool) -> str:
             f'<span style="display:{"flex" if explained else "inline-flex"};align-items:center;gap:.35em;'
             f'margin:.1em .8em .1em 0">{symbol(style)}<span>{name}{meaning}</span></span>'
         )
-    return f'<div class="lab" style="padding-top:.4em;font-size:.8em">{"".join(items)}</div>'
+    return f'<div class="lab small">{"".join(items)}</div>'
 
 
 def plot_title(title: str, lines: Iterable[tuple[str, str, bool]]) -> str:
@@ -80,10 +87,7 @@ def plot_title(title: str, lines: Iterable[tuple[str, str, bool]]) -> str:
         for name, color, dashed in lines
         if name
     )
-    return (
-        f'<div class="lab" style="padding:.35em .75em .1em .75em;font-size:.8em"><b>{escape(title)}</b><br>'
-        f"{items}</div>"
-    )
+    return f'<div class="lab small"><b>{escape(title)}</b><br>{items}</div>'
 
 
 def symbol(style: MarkStyle) -> str:

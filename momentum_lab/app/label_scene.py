@@ -42,7 +42,7 @@ class Label:
 def arrange(marks: list[Mark], size: float) -> list[Label]:
     """Labels for some marks.
 
-    Points on the ground that coincide share one label, "CoP = CMP": what is equal is said to be equal.
+    Points on the ground that coincide share one label, "CoP ≈ CMP": that they coincide is worth reading.
 
     Args:
         marks: what is drawn.
@@ -52,7 +52,7 @@ def arrange(marks: list[Mark], size: float) -> list[Label]:
     labels = []
     for group in _groups([present[key] for key in _POINTS if key in present], _TOGETHER * size):
         style = STYLES[group[0].key]
-        text = " = ".join(STYLES[mark.key].label for mark in group)
+        text = " ≈ ".join(STYLES[mark.key].label for mark in group)
         labels.append(Label(style.key, text, group[0].points[0], style.anchor))
     for key, words in _OTHERS.items():
         if key in present and (mark := present[key]):

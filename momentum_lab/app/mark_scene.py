@@ -105,7 +105,7 @@ class _Solids:
             faces,
             batched_wxyzs=_upright(len(points)),
             batched_positions=points,
-            batched_colors=style.color,
+            batched_colors=style.linear,
             lod="off",
             cast_shadow=False,
             receive_shadow=False,
@@ -130,7 +130,7 @@ class _Arrows:
         self._handle = client.scene.add_arrows(
             name,
             _pairs(points),
-            style.color,
+            style.linear,
             shaft_radius=radius,
             head_radius=2.4 * radius,
             head_length=6.0 * radius,

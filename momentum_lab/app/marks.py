@@ -26,7 +26,7 @@ Shape = Literal[
     "area",
     "dashes",
 ]
-Anchor = Literal["top-left", "top-right", "bottom-left", "bottom-right", "bottom-center"]
+Anchor = Literal["top-left", "top-right", "bottom-left", "bottom-right", "top-center"]
 
 BLACK: Color = (0, 0, 0)
 ORANGE: Color = (230, 159, 0)
@@ -60,9 +60,20 @@ class MarkStyle:
     anchor: Anchor = "bottom-left"
 
     @property
+    def linear(self) -> Color:
+        """The colour as light intensities, which is how viser takes the colours of instances and arrows."""
+        red, green, blue = (round(255.0 * _intensity(channel / 255.0)) for channel in self.color)
+        return red, green, blue
+
+    @property
     def css(self) -> str:
         """The colour as #rrggbb."""
         return "#" + "".join(f"{channel:02x}" for channel in self.color)
+
+
+def _intensity(value: float) -> float:
+    """Light intensity of one sRGB channel, both from 0 to 1."""
+    return float(value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4)
 
 
 _STYLES = (
@@ -125,7 +136,7 @@ _STYLES = (
         "dashes",
         GREY,
         "How far the controller lets the CoP go; the number is the CoP's distance to the nearest edge.",
-        "top-left",
+        "top-center",
     ),
 )
 

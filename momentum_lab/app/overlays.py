@@ -9,7 +9,7 @@ import numpy as np
 
 from momentum_lab.app.support_now import polygon_of, sole_placement
 from momentum_lab.momentum.ground import GRAVITY, NO_FORCE
-from momentum_lab.momentum.support import nearest_in_polygon, support_margin
+from momentum_lab.momentum.support import support_margin
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
 from momentum_lab.robot.model import RobotModel
@@ -29,6 +29,7 @@ _PUSH_LENGTH = 1.4
 # Labels of lines on the ground sit beside them, on the side from which the lab looks first; in CoM heights.
 _BESIDE = 0.13
 _SIDE = np.array([0.47, -0.88])
+_LEFT = np.array([-0.88, -0.47])
 # A dash and a pause of the safe border, m.
 _DASH = 0.012
 
@@ -101,17 +102,14 @@ def _support(sample: Sample, picture: Picture, polygon: np.ndarray, ground: floa
         return []
     safe = polygon_of(sample, picture.robot, picture.safe_border)
     cop = sample["cop_measured"]
-    edge = np.array(_nearest_edge_point(cop, polygon))
-    outward = (edge - cop) / max(float(np.linalg.norm(edge - cop)), 1e-9)
-    label = edge + 0.5 * _BESIDE * sample["com"][2] * outward
     margin = support_margin(cop, polygon)
     return [
         Mark("support", tuple(_on_ground("support", corner, ground) for corner in polygon.tolist())),
         Mark(
             "safe_border",
             _dashes(safe, ground),
-            text=f"{1e3 * margin:.0f} mm to the edge" if math.isfinite(margin) else "",
-            at=_on_ground("safe_border", label.tolist(), ground),
+            text=f"CoP {1e3 * margin:.0f} mm from the edge" if math.isfinite(margin) else "",
+            at=_on_ground("safe_border", _leftmost(polygon), ground),
         ),
     ]
 
@@ -219,13 +217,10 @@ def _dashes(polygon: np.ndarray, ground: float) -> tuple[Point, ...]:
     return tuple(ends)
 
 
-def _nearest_edge_point(cop: np.ndarray, polygon: np.ndarray) -> tuple[float, float]:
-    """The point of the border that the CoP is nearest to."""
-    ends = zip(polygon, np.roll(polygon, -1, axis=0), strict=True)
-    candidates = [nearest_in_polygon(cop, np.array(edge)) for edge in ends]
-    nearest = min(candidates, key=lambda point: float(np.linalg.norm(point - cop)))
-    x, y = nearest.tolist()
-    return x, y
+def _leftmost(polygon: np.ndarray) -> list[float]:
+    """The corner that is out of the way of the other labels."""
+    corner: list[float] = polygon[int(np.argmax(polygon @ _LEFT))].tolist()
+    return corner
 
 
 def _on_ground(key: str, point: tuple[float, float] | list[float], ground: float) -> Point:

@@ -18,7 +18,7 @@ from momentum_lab.robot.model import RobotModel
 
 # How often the plots are drawn, s.
 _PERIOD = 0.1
-_HEIGHT = 106
+_HEIGHT = 100
 _AXIS = {"font": "10px sans-serif", "gap": 2, "ticks": {"size": 3}}
 _POINTS = ("com", "cop", "cmp", "capture")
 # What is asked for is grey and dashed, what the ground may give blue, what it gave green like the GRF.
@@ -143,7 +143,7 @@ def _plot(
         bands=bands,
         scales={
             "x": {"time": False},
-            "y": {"range": {"min": {**limit, "soft": -soft}, "max": {**limit, "soft": soft}}},  # type: ignore[typeddict-item]
+            "y": {"range": {"min": {**limit, "soft": -soft}, "max": {**limit, "soft": soft}}},
             "push": {"range": (0.0, 1.0)},
         },
         axes=({**_AXIS, "size": 20}, {**_AXIS, "size": 36}),  # type: ignore[typeddict-item]

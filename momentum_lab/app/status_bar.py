@@ -16,6 +16,7 @@ from momentum_lab.status import Status
 
 INVITATION = "Push the robot: press P or the button."
 SMALL_STEP, LARGE_STEP = 1, 20
+_SMALL, _LARGE, _STAND_UP = "+1 ms", "+20 ms", "Stand up"
 _SPEEDS = {"1/8": 0.125, "1/4": 0.25, "1/2": 0.5, "1": 1.0}
 _DIRECTIONS = {0: "forward", 90: "to the left", 180: "backward", 270: "to the right"}
 # A status that says more than "standing" stays readable for this long, s.
@@ -48,7 +49,7 @@ class StatusBar:
         self._stand_up = gui.add_button(
             "Stand up again  (R)", color=(0, 114, 178), icon=viser.Icon.ARROW_UP, visible=False
         )
-        self._buttons = gui.add_button_group("time", ("Pause", "1 ms", "20 ms", "Reset"))
+        self._buttons = gui.add_button_group("time", _buttons(playing=True))
         speeds = gui.add_button_group("speed", tuple(_SPEEDS))
         self._stand_up.on_click(lambda _: post(Reset()))
         self._buttons.on_click(lambda event: self._pressed(event.target.value))
@@ -68,7 +69,7 @@ class StatusBar:
         """
         if truth.playing != self._playing:
             self._playing = truth.playing
-            self._buttons.options = ("Pause" if truth.playing else "Play", "1 ms", "20 ms", "Reset")
+            self._buttons.options = _buttons(truth.playing)
             self._next = -math.inf
         now = self._clock()
         if now < self._next and truth.playing:
@@ -103,14 +104,18 @@ class StatusBar:
     def _pressed(self, name: str) -> None:
         if name in {"Play", "Pause"}:
             self._post(Play() if name == "Play" else Pause())
-        elif name == "Reset":
+        elif name == _STAND_UP:
             self._post(Reset())
         else:
-            self._post(StepOnce(SMALL_STEP if name == "1 ms" else LARGE_STEP))
+            self._post(StepOnce(SMALL_STEP if name == _SMALL else LARGE_STEP))
 
     def _write(self, name: str, handle: viser.GuiHtmlHandle, content: str) -> None:
         if self._texts.get(name) != content:
             self._texts[name] = handle.content = content
+
+
+def _buttons(playing: bool) -> tuple[str, ...]:
+    return ("Pause" if playing else "Play", _SMALL, _LARGE, _STAND_UP)
 
 
 def _sentence(truth: Truth) -> str:

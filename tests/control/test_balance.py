@@ -16,7 +16,7 @@ from tests.runs import CHAPTER_PUSH, PUSH_END, PUSH_START, forward_push, play, p
 
 G = 9.81
 # A forward push of 0.1 s at which keeping linear momentum stands and keeping angular momentum falls, N.
-PAIR_PUSH = {"talos": 217.0, "g1": 80.0}
+PAIR_PUSH = {"talos": 340.0, "g1": 128.0}
 # Pushes so small that the CoP stays off the border with the default gains, N.
 SMALL_PUSH = {"talos": 60.0, "g1": 20.0}
 DIRECTIONS = (0, 45, 90, 135, 180, 225, 270, 315)

@@ -1,0 +1,186 @@
+"""Every quantity of a sample, found a second time from the state and the forces."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from momentum_lab.observe import Tick, observe
+from momentum_lab.recording import Layout
+from momentum_lab.robot.state import State
+from momentum_lab.session import Session
+from tests.conftest import assert_close
+from tests.runs import PUSH_END, PUSH_START, forward_push, play, played
+
+G = 9.81
+EVERY = 23
+
+
+@pytest.fixture(scope="module")
+def session(robot) -> Session:
+    return played(robot, forward_push(robot))
+
+
+@pytest.fixture(scope="module")
+def column(session):
+    """A recorded quantity at some ticks of the run."""
+    return lambda name: session.recording.column(name, every=EVERY)
+
+
+def test_time_is_the_number_of_the_tick_times_its_length(session):
+    times = session.recording.column("time")
+    assert_close(times, np.arange(len(times)) * 1e-3, 1e-12)
+
+
+def test_a_row_holds_the_state_and_what_acts_until_the_next(robot, session):
+    """q[i+1] = q[i] (+) dt v[i+1], and A_G (v[i+1] - v[i]) / dt + dA_G v is the measured rate (Eq. 20)."""
+    q, v, rate = (session.recording.column(name) for name in ("q", "v", "momentum_rate_measured"))
+    for i in range(0, len(q) - 1, EVERY):
+        assert_close(q[i + 1], pin.integrate(robot.model, q[i], 1e-3 * v[i + 1]), 1e-12)
+        dynamics = robot.at(State(q[i], v[i]))
+        explained = dynamics.centroidal_map @ (v[i + 1] - v[i]) / 1e-3 + dynamics.centroidal_bias
+        assert_close(explained, rate[i], 1e-9 * robot.mass * G)
+
+
+def test_com_and_momentum_are_the_states(robot, column):
+    """By Pinocchio's centre of mass and link by link momenta: l = sum m c', k = sum (c - r) x m c' + I w."""
+    model, data = robot.model, robot.model.createData()
+    for q, v, com, speed, momentum in zip(
+        *(column(name) for name in ("q", "v", "com", "com_velocity", "momentum")), strict=True
+    ):
+        pin.forwardKinematics(model, data, q, v)
+        r = pin.centerOfMass(model, data, q)
+        linear, angular = np.zeros(3), np.zeros(3)
+        for j in range(1, model.njoints):
+            body, placement, twist = model.inertias[j], data.oMi[j], data.v[j]
+            spin = placement.rotation @ twist.angular
+            c = placement.act(body.lever)
+            rate = placement.rotation @ (twist.linear + np.cross(twist.angular, body.lever))
+            inertia = placement.rotation @ body.inertia @ placement.rotation.T
+            linear += body.mass * rate
+            angular += np.cross(c - r, body.mass * rate) + inertia @ spin
+        assert_close(com, r, 1e-12)
+        assert_close(speed, linear / robot.mass, 1e-10)
+        assert_close(momentum, np.concatenate([linear, angular]), 1e-10)
+
+
+def test_sole_poses_are_the_states(robot, column):
+    data = robot.model.createData()
+    for q, poses in zip(column("q"), column("sole_pose"), strict=True):
+        pin.framesForwardKinematics(robot.model, data, q)
+        for sole, pose in zip(robot.soles, poses, strict=True):
+            assert_close(pose[:3], data.oMf[sole.frame].translation, 1e-12)
+            assert_close(pin.Quaternion(pose[3:]).toRotationMatrix(), data.oMf[sole.frame].rotation, 1e-12)
+
+
+def test_cop_explains_the_measured_momentum_rate(robot, column):
+    """Eq. 1 without the push: about the CoP the ground has no horizontal moment."""
+    com, rate, push, cop = (
+        column(name) for name in ("com", "momentum_rate_measured", "push_wrench", "cop_measured")
+    )
+    ground = column("sole_pose")[:, :, 2].min(axis=1)
+    force = rate[:, :3] - push[:, :3] + [0.0, 0.0, robot.mass * G]
+    moment = rate[:, 3:] - (push[:, 3:] - np.cross(com, push[:, :3]))
+    arm = np.column_stack([cop, ground]) - com
+    assert_close((moment - np.cross(arm, force))[:, :2], np.zeros((len(com), 2)), 1e-8 * robot.mass * G)
+
+
+def test_cmp_lies_on_the_line_of_the_force_through_the_com(column):
+    """Eq. 22: (s - r) x f = 0; Eq. 23: s - p = (dk_y, -dk_x) / f_z with the rate of the ground alone."""
+    com, soles, wrench = column("com"), column("sole_pose")[:, :, :3], column("foot_wrench_measured")
+    force = wrench[:, :, :3].sum(axis=1)
+    arm = np.column_stack([column("cmp"), soles[:, :, 2].min(axis=1)]) - com
+    assert_close(np.cross(arm, force), np.zeros_like(force), 1e-9 * np.abs(force).max())
+    moment = (np.cross(soles - com[:, None], wrench[:, :, :3]) + wrench[:, :, 3:]).sum(axis=1)
+    gap = np.column_stack([moment[:, 1], -moment[:, 0]]) / force[:, 2:]
+    assert_close(column("cmp") - column("cop_measured"), gap, 1e-9)
+
+
+def test_the_capture_point_is_where_a_pendulum_comes_to_rest(column):
+    com, speed = column("com"), column("com_velocity")
+    omega = np.sqrt(G / (com[:, 2] - column("sole_pose")[:, :, 2].min(axis=1)))
+    assert_close(column("capture_point"), com[:, :2] + speed[:, :2] / omega[:, None], 1e-12)
+
+
+def test_foot_cops_are_moment_free_points_of_their_soles(robot, column):
+    for poses, wrenches, cops in zip(
+        *(column(name) for name in ("sole_pose", "foot_wrench_measured", "foot_cop_measured")), strict=True
+    ):
+        for pose, wrench, cop in zip(poses, wrenches, cops, strict=True):
+            rotation = pin.Quaternion(pose[3:]).toRotationMatrix()
+            arm = rotation @ [*cop, 0.0]
+            moment = rotation.T @ (wrench[3:] - np.cross(arm, wrench[:3]))
+            assert_close(moment[:2], np.zeros(2), 1e-9 * robot.mass * G)
+
+
+def test_the_push_is_seen_while_it_lasts(robot, session):
+    """Force and moment of a horizontal push through the CoM, about the world origin."""
+    column = session.recording.column
+    times, push, com = column("time"), column("push_wrench"), column("com")
+    force = session.pushes[0].force
+    during = (times > PUSH_START - 1e-6) & (times < PUSH_END - 1e-6)
+    assert_close(push[during, :3], np.tile([force, 0.0, 0.0], (during.sum(), 1)), 1e-6)
+    assert_close(push[during, 3:], np.cross(com[during], push[during, :3]), 1e-6)
+    assert np.abs(push[~during]).max() < 1e-6
+    assert 1e-3 * push[:, 0].sum() == pytest.approx(0.1 * force, rel=1e-9)
+
+
+def test_the_equation_residual_is_the_contracts(robot, session):
+    """Largest of |A_G a + dA_G v - dh_measured| / (m g), here from neighbouring rows; and it is next to nothing."""
+    residual = session.recording.column("equation_residual")
+    q, v, rate = (session.recording.column(name) for name in ("q", "v", "momentum_rate_measured"))
+    assert residual.max() < 1e-9
+    for i in range(0, len(q) - 1, 10 * EVERY):
+        dynamics = robot.at(State(q[i], v[i]))
+        missed = dynamics.centroidal_map @ (v[i + 1] - v[i]) / 1e-3 + dynamics.centroidal_bias - rate[i]
+        assert residual[i] == pytest.approx(np.abs(missed).max() / (robot.mass * G), abs=1e-12)
+
+
+def test_an_answer_that_is_not_what_happened_has_a_residual(robot, session):
+    """The residual notices a momentum rate that is off by one percent of the weight."""
+    recording = session.recording
+    q, v = recording.column("q"), recording.column("v")
+    layout = Layout.of(robot)
+    row = np.zeros(layout.width)
+    tick = tick_of(robot, State(q[300], v[300]), State(q[301], v[301]))
+    observe(row, layout.slices, tick)
+    assert row[layout.slices["equation_residual"]][0] == pytest.approx(0.01, rel=1e-6)
+
+
+def tick_of(robot, before: State, after: State) -> Tick:
+    """A tick whose measured rate is off by one percent of the weight, with a ground that only carries."""
+    from momentum_lab.control.fallback import limp
+    from momentum_lab.physics.simulator import Step
+
+    dynamics = robot.at(before)
+    rate = dynamics.centroidal_map @ (after.v - before.v) / 1e-3 + dynamics.centroidal_bias
+    rate[1] += 0.01 * robot.mass * G
+    carried = np.zeros((2, 6))
+    carried[:, 2] = 0.5 * robot.mass * G
+    step = Step(after, np.zeros(robot.na), carried, np.zeros(6), np.zeros(6), rate)
+    return Tick(robot, 0.3, 1e-3, dynamics, limp(robot, dynamics, None), step)
+
+
+def test_every_number_of_a_row_is_written(robot):
+    """Nothing of an earlier round of the ring shines through."""
+    session = Session(forward_push(robot), robot=robot)
+    session.recording.next_row()[:] = 12345.678
+    session.recording.clear()
+    row = session.tick().row
+    assert not (row == 12345.678).any()
+
+
+def test_in_the_air_there_is_no_cop(robot):
+    """Points that do not exist are not a number; forces are zero, and the capture point remains."""
+    lifted = play(robot, forward_push(robot, seconds=0.01))
+    q = lifted.state.q.copy()
+    q[2] += 1.0
+    lifted.state = State(q, np.zeros(robot.nv))
+    sample = lifted.tick()
+    assert np.isnan(sample["cop_measured"]).all()
+    assert np.isnan(sample["cmp"]).all()
+    assert np.isnan(sample["foot_cop_measured"]).all()
+    assert not sample["foot_wrench_measured"].any()
+    assert_close(sample["momentum_rate_measured"], [0.0, 0.0, -robot.mass * G, 0.0, 0.0, 0.0], 1e-9)
+    assert np.isfinite(sample["capture_point"]).all()
