@@ -17,8 +17,8 @@ from momentum_lab.app.shapes import is_solid, solid
 _SAME_PLACE = 3e-4
 # Sizes for a robot whose CoM is one metre high, m.
 _RADIUS = {"ball": 0.036, "ring": 0.026, "disc": 0.014}
-_POINT_RADIUS = 0.018
-_SHAFT = {"arrow": 0.011, "thin arrow": 0.005}
+_POINT_RADIUS = 0.02
+_SHAFT = {"arrow": 0.009, "thin arrow": 0.005}
 _THICKNESS = {"line": 0.005, "bar": 0.02, "dashes": 0.004}
 
 

@@ -108,7 +108,7 @@ def _support(sample: Sample, picture: Picture, polygon: np.ndarray, ground: floa
         Mark(
             "safe_border",
             _dashes(safe, ground),
-            text=f"CoP {1e3 * margin:.0f} mm from the edge" if math.isfinite(margin) else "",
+            text=f"CoP {round(1e3 * margin)} mm from the edge" if math.isfinite(margin) else "",
             at=_on_ground("safe_border", _leftmost(polygon), ground),
         ),
     ]

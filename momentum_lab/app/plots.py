@@ -146,7 +146,7 @@ def _plot(
             "y": {"range": {"min": {**limit, "soft": -soft}, "max": {**limit, "soft": soft}}},
             "push": {"range": (0.0, 1.0)},
         },
-        axes=({**_AXIS, "size": 20}, {**_AXIS, "size": 36}),  # type: ignore[typeddict-item]
+        axes=({**_AXIS, "size": 20}, {**_AXIS, "size": 36, "space": 20}),  # type: ignore[typeddict-item]
         legend={"show": False},
         height=_HEIGHT,
         padding=(4, 10, 0, 0),

@@ -14,7 +14,7 @@ from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds
 from momentum_lab.control.gains import gain
 from momentum_lab.control.priority import Compromise, compromise
 from momentum_lab.errors import SolverError
-from momentum_lab.momentum.ground import GRAVITY
+from momentum_lab.momentum.ground import GRAVITY, cop_from_momentum_rate
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -136,7 +136,8 @@ class ComputedTorque:
         torque = self._inverse_dynamics(dynamics, acceleration, feet.wrench, reference.stance)
         torque += _feedback(dynamics, memory, gains)
         command = self._joint_command(dynamics, acceleration, memory)
-        return _output(torque, acceleration, desired, balance, feet, command)
+        cop = self._cop(dynamics, reference.stance, feet)
+        return _output(torque, acceleration, desired, balance, cop, feet, command)
 
     def _desired_rate(
         self, dynamics: Dynamics, reference: Reference, gains: ComputedTorqueGains
@@ -174,6 +175,11 @@ class ComputedTorque:
         )
         feet = self.footing.stance_feet(dynamics, stance, gains.safe_border)
         return self.footing.share(feet, balance.force, balance.angular_rate, bounds)
+
+    def _cop(self, dynamics: Dynamics, stance: tuple[int, ...], feet: FootForces) -> np.ndarray:
+        """CoP of the admissible wrenches (2,), m (Eq. 21)."""
+        height = float(dynamics.sole_position[list(stance), 2].mean())
+        return cop_from_momentum_rate(feet.momentum_rate, dynamics.com_in_world, self.robot.mass, height)
 
     def _acceleration_program(self, stance: tuple[int, ...]) -> AccelerationProgram:
         """Step 2 for the feet that carry."""
@@ -214,6 +220,7 @@ class ComputedTorque:
             acceleration=np.zeros(self.robot.nv),
             desired=desired,
             balance=balance,
+            cop_admissible=np.full(2, np.nan),
             feet=FootForces(np.zeros((len(self.robot.soles), 6)), np.zeros(6)),
             memory=self.initial_memory(dynamics),
             failure=f"{error}; {HOLD_IN_WORDS}",
@@ -244,6 +251,7 @@ def _output(
     acceleration: np.ndarray,
     desired: np.ndarray,
     balance: Compromise,
+    cop_admissible: np.ndarray,
     feet: FootForces,
     memory: JointCommand,
     failure: str | None = None,
@@ -255,7 +263,7 @@ def _output(
         momentum_rate_admissible=feet.momentum_rate,
         foot_wrench_admissible=feet.wrench,
         cop_desired=balance.cop_desired,
-        cop_admissible=balance.cop_admissible,
+        cop_admissible=cop_admissible,
         failure=failure,
         memory=memory,
     )

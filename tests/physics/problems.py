@@ -86,14 +86,13 @@ def problem_of(
 ) -> Problem:
     """The contact problem of a state under generalized forces (nv,) without contact."""
     touches = sole_touches(robot, dynamics, Ground.level(2, friction))
-    near = [(foot, touch) for foot, touch in enumerate(touches) if touch is not None]
     contacts = Contacts(
-        jacobian=np.concatenate([touch.jacobian for _, touch in near]),
-        gap=np.concatenate([touch.gap for _, touch in near]),
-        friction=tuple(friction for _, touch in near for _ in touch.gap),
+        jacobian=np.concatenate([touch.jacobian for touch in touches]),
+        gap=np.concatenate([touch.gap for touch in touches]),
+        friction=tuple(friction for touch in touches for _ in touch.gap),
     )
-    feet = np.concatenate([np.full(touch.gap.size, foot) for foot, touch in near])
-    corners = np.concatenate([touch.position for _, touch in near])
+    feet = np.concatenate([np.full(touch.gap.size, touch.foot) for touch in touches])
+    corners = np.concatenate([touch.position for touch in touches])
     mass_matrix, impulse = with_joint_limits(robot, dynamics, dt * force, dt)
     return Problem(dynamics, mass_matrix, impulse, contacts, feet, corners, dt)
 

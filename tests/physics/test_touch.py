@@ -34,6 +34,7 @@ def test_corners_of_soles_and_their_velocities(robot, rng):
     rotation = random_rotation(rng)
     patch = Patch(0.7, np.array([0.0, 0.0, 0.5]), rotation)
     touches = sole_touches(robot, robot.at(state), Ground((patch, patch), patch))
+    assert [touch.foot for touch in touches] == [0, 1]
     for foot, touch in enumerate(touches):
         position = corners_at(robot, state.q, foot)
         ahead = corners_at(robot, robot.integrate(state.q, EPS * state.v), foot)
@@ -46,9 +47,8 @@ def test_corners_of_soles_and_their_velocities(robot, rng):
 
 def test_a_foot_in_the_air_touches_nothing(robot):
     q = standing_posture(robot, robot.foot_names[:1])
-    left, right = sole_touches(robot, robot.at(State(q, np.zeros(robot.nv))), Ground.level(2, 0.7))
-    assert left is not None
-    assert right is None
+    touches = sole_touches(robot, robot.at(State(q, np.zeros(robot.nv))), Ground.level(2, 0.7))
+    assert [touch.foot for touch in touches] == [0]
 
 
 def test_bodies_of_a_standing_robot_are_clear(robot):
@@ -73,6 +73,7 @@ def test_bodies_near_the_floor_are_found_where_they_are(robot, rng):
         robot.integrate(state.q, -EPS * state.v)
     )
     touches = BodyPoints(robot, 1e-3).touches(state, floor)
+    assert {touch.foot for touch in touches} == {None}
     assert_close(np.concatenate([touch.position for touch in touches]), position[near], 1e-12)
     assert_close(np.concatenate([touch.gap for touch in touches]), position[near, 2] - 0.8, 1e-12)
     velocity = np.concatenate([touch.jacobian @ state.v for touch in touches]).reshape(-1, 3)
