@@ -24,7 +24,9 @@ EVENTS = [
     SetGain("linear_damping", 7.5),
     SetPriority(0.25),
     SelectController("computed-torque"),
-    ApplyPush(Push(force=100.0, duration=0.2, direction_deg=-30.0, height=1.2, body="head", shape="half-sine")),
+    ApplyPush(
+        Push(force=100.0, duration=0.2, direction_deg=-30.0, height=1.2, body="head", shape="half-sine")
+    ),
     Reset(),
     Play(),
     Pause(),

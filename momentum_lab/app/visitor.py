@@ -120,9 +120,10 @@ class Visitor:
         if truth.run != self._run:
             self._run = truth.run
             panels.plots.clear()
-        self._draw_scene(stage, panels, truth, sample)
-        self._draw_panels(panels, frame, loaded, sample)
+        with self._client.atomic():  # or a picture could be sent in two halves
+            self._draw_scene(stage, panels, truth, sample)
         self._client.flush()
+        self._draw_panels(panels, frame, loaded, sample)
 
     def _set_stage(self, truth: Truth, loaded: LoadedRobot, sample: Sample) -> Stage:
         """The stage for the robot that plays; the one before it leaves."""

@@ -13,7 +13,7 @@ from momentum_lab.app.profile import RenderProfile
 _FIELD_OF_VIEW = math.radians(32.0)
 # Below this width over height the controls cover the lower part of the picture.
 _NARROW = 0.62
-_COVERED = 0.58
+_COVERED = 0.62
 
 
 @dataclass(frozen=True, slots=True)

@@ -65,7 +65,7 @@ class AccelerationProgram:
 
         min w_b |W (dh_a - A_G a - dA_G v)|^2 + (1 - w_b) (|theta''_d - theta''|^2 + w_p |omega'_d - omega'|^2)
         subject to J_c a = dv_c - dJ_c v and theta''_l <= theta'' <= theta''_u (Eqs. 31, 32, 34, with squared
-        norms). W = diag(1 / m, 1 / I) makes momentum rates into accelerations. Joints of feet that do not
+        norms). W = diag(1 / m, I_G^-1) makes momentum rates into accelerations. Joints of feet that do not
         carry follow the posture like the upper body.
 
         Two extensions: the pelvis term, and torque limits. The foot forces are known by now, so torques are
@@ -128,10 +128,13 @@ def contact_constraint(
 def _momentum_objective(
     mass: float, dynamics: Dynamics, rate: np.ndarray, weight: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    scale = np.full(6, 1.0 / mass)
-    scale[3:] = 1.0 / dynamics.locked_inertia.diagonal()
-    weighted = dynamics.centroidal_map.T * (weight * scale**2)
-    return weighted @ dynamics.centroidal_map, -weighted @ (rate - dynamics.centroidal_bias)
+    """w_b |W (dh_a - A_G a - dA_G v)|^2; W turns with the robot, so that its heading does not matter."""
+    scale = np.zeros((6, 6))
+    scale[(0, 1, 2), (0, 1, 2)] = 1.0 / mass
+    scale[3:, 3:] = np.linalg.inv(dynamics.locked_inertia)
+    scaled = scale @ dynamics.centroidal_map
+    weighted = weight * scaled.T
+    return weighted @ scaled, -weighted @ (scale @ (rate - dynamics.centroidal_bias))
 
 
 def _add_posture(

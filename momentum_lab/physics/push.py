@@ -19,9 +19,19 @@ MAX_FORCE = 5000.0
 MAX_DURATION = 10.0
 MAX_HEIGHT = 3.0
 MAX_SPEED = 5.0
+MAX_START = 3600.0
 
 Shape = Literal["rectangle", "half-sine"]
 _MEAN_OF_SHAPE = {"rectangle": 1.0, "half-sine": 2.0 / math.pi}
+_ABOVE_ZERO = math.ulp(0.0)
+_RANGES = {
+    "force": (0.0, MAX_FORCE, "N"),
+    "velocity_change": (0.0, MAX_SPEED, "m/s"),
+    "duration": (_ABOVE_ZERO, MAX_DURATION, "s"),
+    "direction_deg": (-360.0, 360.0, "degrees"),
+    "start": (0.0, MAX_START, "s"),
+    "height": (_ABOVE_ZERO, MAX_HEIGHT, "m"),
+}
 
 
 class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -45,7 +55,7 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     velocity_change: Annotated[float, msgspec.Meta(ge=0.0, le=MAX_SPEED)] | None = None
     duration: Annotated[float, msgspec.Meta(gt=0.0, le=MAX_DURATION)] = 0.1
     direction_deg: Annotated[float, msgspec.Meta(ge=-360.0, le=360.0)] = 0.0
-    start: Annotated[float, msgspec.Meta(ge=0.0)] = 0.5
+    start: Annotated[float, msgspec.Meta(ge=0.0, le=MAX_START)] = 0.5
     height: Annotated[float, msgspec.Meta(gt=0.0, le=MAX_HEIGHT)] | None = None
     body: str | None = None
     shape: Shape = "rectangle"
@@ -67,8 +77,9 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         """The same push with its force (N) for a robot of a mass (kg).
 
         Raises:
-            InputError: neither or both of force and velocity change are given.
+            InputError: neither or both of force and velocity change are given, or a number is out of range.
         """
+        self._check_ranges()
         if (self.force is None) == (self.velocity_change is None):
             given = f"force {self.force}, velocity_change {self.velocity_change}"
             raise InputError("push", given, "either a force (N) or a velocity_change (m/s)")
@@ -76,6 +87,14 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             return self
         force = self.velocity_change * mass / (self.duration * _MEAN_OF_SHAPE[self.shape])
         return msgspec.structs.replace(self, force=force, velocity_change=None)
+
+    def _check_ranges(self) -> None:
+        """Refuse numbers that a push read from a file could not have, NaN among them."""
+        for field, (low, high, unit) in _RANGES.items():
+            value = getattr(self, field)
+            if value is not None and not low <= value <= high:
+                lowest = "above 0" if low == _ABOVE_ZERO else f"from {low:g}"
+                raise InputError(field, value, f"{lowest} to {high:g} {unit}")
 
     def delivered(self, time: float) -> float:
         """Impulse delivered from the start of the push until `time`, N s."""

@@ -53,7 +53,7 @@ def feet_for(
     """Admissible foot forces next to a momentum rate (6,)."""
     footing = Footing(robot)
     bounds = ForceBounds(friction=0.6, normal_moment=0.018, least_force=0.02 * robot.mass * G)
-    force = rate[:3] + [0.0, 0.0, robot.mass * G]
+    force = rate[:3] + np.array([0.0, 0.0, robot.mass * G])
     return footing.share(footing.stance_feet(dynamics, stance, 0.005), force, rate[3:], bounds)
 
 

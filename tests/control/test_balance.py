@@ -12,7 +12,7 @@ from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
 from tests.control.situations import goal, home
-from tests.runs import CHAPTER_PUSH, PUSH_END, PUSH_START, forward_push, play, played, settled_after
+from tests.runs import PUSH_END, PUSH_START, forward_push, play, played, settled_after
 
 G = 9.81
 # A forward push of 0.1 s at which keeping linear momentum stands and keeping angular momentum falls, N.

@@ -65,7 +65,7 @@ def test_torques_are_those_of_inverse_dynamics(robot, rng, stance):
 
 @pytest.mark.parametrize("stance", [BOTH, (0,)])
 def test_the_free_base_is_asked_for_what_the_momentum_misses(robot, rng, stance):
-    """Base rows of H a + C v + tau_g - J_c^T f_c: the missed momentum rate, moved from the CoM to the base (Eq. 29)."""
+    """Base rows of H a + C v + tau_g - J_c^T f_c: the missed momentum rate, moved to the base (Eq. 29)."""
     for _ in range(5):
         dynamics = swaying(robot, rng, stance)
         output = answer(robot, dynamics, stance=stance)
@@ -104,9 +104,7 @@ def test_momentum_rates_are_gravity_and_the_foot_wrenches(robot, rng):
         output = answer(robot, dynamics, priority=priority)
         wrench = output.foot_wrench_admissible
         arms = dynamics.sole_position - dynamics.com_in_world
-        rate = np.concatenate(
-            [wrench[:, :3].sum(0), (np.cross(arms, wrench[:, :3]) + wrench[:, 3:]).sum(0)]
-        )
+        rate = np.concatenate([wrench[:, :3].sum(0), (np.cross(arms, wrench[:, :3]) + wrench[:, 3:]).sum(0)])
         rate[2] -= robot.mass * G
         assert_close(output.momentum_rate_admissible, rate, 1e-9 * robot.mass * G)
 
@@ -117,12 +115,13 @@ def test_on_one_foot_priority_0_is_figure_7_left(robot):
     dynamics = falling_forward(robot, 0.3, stance)
     output = answer(robot, dynamics, stance=stance)
     desired, admissible = output.momentum_rate_desired, output.momentum_rate_admissible
-    force = desired[:3] + [0.0, 0.0, robot.mass * G]
+    force = desired[:3] + np.array([0.0, 0.0, robot.mass * G])
     assert_close(admissible[:3], desired[:3], 1e-6 * robot.mass * G)
     height = dynamics.com_in_world[2] - dynamics.sole_position[0, 2]
-    p_d = dynamics.com_in_world[:2] + np.array(
-        [-height * force[0] - desired[4], -height * force[1] + desired[3]]
-    ) / force[2]
+    p_d = (
+        dynamics.com_in_world[:2]
+        + np.array([-height * force[0] - desired[4], -height * force[1] + desired[3]]) / force[2]
+    )
     sole = robot.soles[0]
     corners = dynamics.sole_position[0, :2] + np.array(
         [

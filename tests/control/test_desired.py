@@ -47,9 +47,7 @@ def test_angular_rate_brakes_what_exceeds_the_wish(robot, rng):
     """Eq. 37 with K_theta = 0: the chapter's law, -Gamma_11 times the error."""
     dynamics = swaying(robot, rng)
     excess = np.array([0.3, -0.2, 0.1])
-    reference = dataclasses.replace(
-        goal(robot, dynamics), angular_momentum=dynamics.momentum[3:] - excess
-    )
+    reference = dataclasses.replace(goal(robot, dynamics), angular_momentum=dynamics.momentum[3:] - excess)
     assert_close(desired_angular_rate(dynamics, reference, 6.0, 0.0), -6.0 * excess, 1e-12)
 
 

@@ -54,7 +54,7 @@ def test_wrenches_and_momentum_rate_tell_the_same(robot, rng, stance):
 
 @pytest.mark.parametrize("stance", [BOTH, (0,), (1,)])
 def test_every_foot_wrench_is_one_that_the_ground_can_give(robot, rng, stance):
-    """In sole axes: CoP in the safe sole, normal moment small enough; in double support the cone and the least force."""
+    """In sole axes: CoP in the safe sole, normal moment within bounds; on two feet the cone and the least force."""
     dynamics = swaying(robot, rng, stance)
     for force, angular_rate in demands(robot, rng):
         # In single support the net force is the foot's force; it comes from the cone already.
@@ -87,7 +87,7 @@ def test_single_support_is_the_closed_form(robot, rng):
             x, y = np.clip(wanted, sole.lower + BORDER, sole.upper - BORDER)
             limit = BOUNDS.normal_moment * f[2]
             twist = np.clip(moment[2] - (x * f[1] - y * f[0]), -limit, limit)
-            about_sole = np.cross([x, y, 0.0], f) + [0.0, 0.0, twist]
+            about_sole = np.cross([x, y, 0.0], f) + np.array([0.0, 0.0, twist])
             expected = np.concatenate([force, rotation @ about_sole])
             answer = share(robot, dynamics, stance, force, angular_rate)
             assert_close(answer.wrench[stance[0]], expected, 1e-9 * robot.mass * G)
@@ -140,9 +140,7 @@ def test_what_the_ankles_need_not_do_they_do_not_do(robot):
     footing = Footing(robot)
     feet = footing.stance_feet(dynamics, BOTH, BORDER)
     for tilt, split in (((0.0, 0.0), 0.5), ((0.05, 0.0), 0.5), ((-0.04, 0.06), 0.4), ((0.0, -0.08), 0.7)):
-        forces = [
-            part * robot.mass * G * np.array([tilt[0], tilt[1], 1.0]) for part in (split, 1.0 - split)
-        ]
+        forces = [part * robot.mass * G * np.array([tilt[0], tilt[1], 1.0]) for part in (split, 1.0 - split)]
         angular_rate = sum(np.cross(foot.com_to_ankle, f) for foot, f in zip(feet, forces, strict=True))
         answer = share(robot, dynamics, BOTH, sum(forces), angular_rate)
         # Less than half a millimetre of CoP under the whole weight.

