@@ -37,7 +37,10 @@ class ApplyPush(msgspec.Struct, frozen=True, tag=True):
 
 
 class Reset(msgspec.Struct, frozen=True, tag=True):
-    """Stand the robot up again where it started and set the clock to zero; gains and priority stay."""
+    """Stand the robot up again where it started and set the clock to zero.
+
+    Gains and priority stay; the scenario's own pushes are not repeated.
+    """
 
 
 class Play(msgspec.Struct, frozen=True, tag=True):

@@ -172,6 +172,12 @@ def test_another_controller_starts_with_its_own_gains(talos):
 # Runs
 
 
+def test_a_run_begins_with_the_priority_of_its_scenario(talos):
+    session = session_of(talos, priority=0.6)
+    assert session.priority == 0.6
+    assert session.tick().number("priority") == 0.6
+
+
 def test_the_clock_counts_ticks(talos):
     session = session_of(talos, timestep=5e-4)
     run(session, 7)
@@ -181,11 +187,11 @@ def test_the_clock_counts_ticks(talos):
 
 
 def test_the_ring_keeps_the_last_samples(robot):
-    """Half a second in a ring of 0.1 s: the same rows as in a recording that keeps everything."""
+    """Half a second in a ring of 0.09 s: the same rows as in a recording that keeps everything."""
     scenario = forward_push(robot, seconds=0.5)
-    short = run(Session(scenario, robot=robot, capacity=100), 500)
-    assert len(short.recording) == 100
-    assert bits(short) == played(robot, scenario).recording.rows()[-100:].tobytes()
+    short = run(Session(scenario, robot=robot, capacity=90), 500)
+    assert len(short.recording) == 90
+    assert bits(short) == played(robot, scenario).recording.rows()[-90:].tobytes()
 
 
 def test_a_recording_is_as_long_as_its_scenario(talos):

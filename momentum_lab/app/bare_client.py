@@ -57,6 +57,8 @@ class Received:
         changes: how many things were moved, turned or changed in the scene.
         told: when the simulated time was last told, and what it was, s.
         kinds: how many messages of each type.
+        latest: the latest message of each type.
+        notices: what notifications have said.
         labels: uuid of each widget by its label.
     """
 
@@ -64,6 +66,8 @@ class Received:
     changes: int = 0
     told: tuple[float, float] = (0.0, 0.0)
     kinds: Counter[str] = field(default_factory=Counter)
+    latest: dict[str, dict[str, Any]] = field(default_factory=dict)
+    notices: list[str] = field(default_factory=list)
     labels: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -75,10 +79,13 @@ class Received:
         """Count one window of messages."""
         for message in messages:
             self.kinds[message["type"]] += 1
+            self.latest[message["type"]] = message
             self.changes += message["type"] in _MOVING
             if message["type"] == "SetOrientationMessage":
                 self.turned[message["name"]] += 1
             properties = message.get("props") or {}
+            if message["type"] == "NotificationShowMessage":
+                self.notices.append(properties["body"])
             if "label" in properties and "uuid" in message:
                 self.labels[properties["label"]] = message["uuid"]
             told = _SIMULATED.search(str((message.get("updates") or {}).get("content", "")))
@@ -105,7 +112,11 @@ class BareClient:
 
     def send(self, message: dict[str, Any]) -> None:
         """Send one message as a browser would."""
-        self._socket.send(msgspec.msgpack.encode(message))
+        self.send_raw(msgspec.msgpack.encode(message))
+
+    def send_raw(self, data: bytes) -> None:
+        """Send bytes as no browser would."""
+        self._socket.send(data)
 
     def set_value(self, label: str, value: Any) -> None:
         """Give a widget a value, whether it is allowed or not; True presses a button.

@@ -15,6 +15,9 @@ from momentum_lab.control.gains import GainInfo, declared_gains
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.events import LoadScenario, SelectController, SelectRobot, SetGain, SetPriority
 
+# Viser breaks labels after a slash; this one it does not know.
+_TYPOGRAPHY = str.maketrans("/", "∕")
+
 
 @dataclass(frozen=True, slots=True)
 class Choices:
@@ -159,4 +162,4 @@ def _words(gain: GainInfo) -> str:
 
 
 def _unit(gain: GainInfo) -> str:
-    return "" if gain.unit == "1" else gain.unit.replace("^2", "²").replace("^3", "³")
+    return "" if gain.unit == "1" else gain.unit.translate(_TYPOGRAPHY).replace("^2", "²").replace("^3", "³")

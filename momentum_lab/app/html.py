@@ -29,7 +29,8 @@ def status_line(kind: str, words: str, color: str) -> str:
     css = COLORS[color]
     return (
         f'<div class="lab" data-status="{escape(kind)}" style="padding-top:.5em">'
-        f'<div style="border-left:.35em solid {css};padding:.15em 0 .15em .6em;min-height:2.8em">'
+        f'<div style="border-left:.35em solid {css};padding:.1em 0 .1em .6em;min-height:3.6em;'
+        'display:flex;align-items:center">'
         f'<span style="font-size:1.25em;font-weight:600;color:{css}">{_SIGNS[kind]} {escape(words)}</span>'
         "</div></div>"
     )

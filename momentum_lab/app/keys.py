@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -12,6 +14,9 @@ from momentum_lab.app.status_bar import LARGE_STEP, SMALL_STEP, StatusBar
 from momentum_lab.app.tabs import Tabs
 from momentum_lab.app.widgets import Post
 from momentum_lab.events import Reset, StepOnce
+
+# Keys that follow each other faster than this come from one that is held down, s.
+_REPEATED = 0.12
 
 _HELP = """
 **P** push &nbsp;·&nbsp; **K** play or pause &nbsp;·&nbsp; **J** step 1 ms &nbsp;·&nbsp; **L** step 20 ms
@@ -48,7 +53,16 @@ def add_keys(client: viser.ClientHandle, post: Post, push: PushPanel, status: St
 
 
 def _triggered(act: Callable[[], None]) -> Callable[[Any], None]:
-    return lambda _: act()
+    """What a key does; a key that is held down repeats itself, and that is not meant."""
+    last = -math.inf
+
+    def trigger(_: Any) -> None:
+        nonlocal last
+        before, last = last, time.monotonic()
+        if last - before > _REPEATED:
+            act()
+
+    return trigger
 
 
 def _show_help(client: viser.ClientHandle) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
+import os
 import threading
 from collections.abc import Collection, Iterator
 from multiprocessing import forkserver
@@ -11,7 +13,7 @@ import msgspec
 
 from momentum_lab.app import worker
 from momentum_lab.app.inbox import checked_event
-from momentum_lab.app.wire import Frame, FrameTaken, packed, unpacked_frame
+from momentum_lab.app.wire import Frame, FrameTaken, FrameWanted, packed, unpacked_frame
 from momentum_lab.events import Event
 from momentum_lab.scenario import Scenario
 
@@ -19,10 +21,15 @@ from momentum_lab.scenario import Scenario
 _PATIENCE = 5.0
 
 
+# A process that forks must have no threads, and numerical libraries start theirs when they are loaded.
+_ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+
+
 def warm_up() -> None:
-    """Start the process that workers are forked from: it has no threads and has loaded everything once."""
+    """Start the process that workers are forked from: it has loaded everything once."""
     multiprocessing.set_forkserver_preload([worker.__name__])
-    forkserver.ensure_running()
+    with _environment(_ONE_THREAD):
+        forkserver.ensure_running()
 
 
 class Link:
@@ -63,6 +70,10 @@ class Link:
                 yield unpacked_frame(data)
                 self._send(packed(FrameTaken()))
 
+    def want_frame(self) -> None:
+        """Ask for a frame even if nothing has happened."""
+        self._send(packed(FrameWanted()))
+
     def close(self) -> None:
         """Let the worker go and wait until it is gone; `frames` ends."""
         self.process.terminate()
@@ -77,3 +88,18 @@ class Link:
                 self._connection.send_bytes(data)
             except OSError:
                 return  # the session has gone; whoever reads the frames finds out
+
+
+@contextlib.contextmanager
+def _environment(values: dict[str, str]) -> Iterator[None]:
+    """Other values of some environment variables, for a while."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value

@@ -113,7 +113,7 @@ _STYLES = (
         "cross",
         PURPLE,
         "Where the CMP has to be for the CoM to come to rest above it.",
-        "top-left",
+        "bottom-left",
     ),
     MarkStyle("grf", "GRF", "arrow", GREEN, "Net ground reaction force, drawn from the CoP.", "bottom-right"),
     MarkStyle(

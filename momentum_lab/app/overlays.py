@@ -75,7 +75,7 @@ def overlays(sample: Sample, picture: Picture) -> list[Mark]:
         sample: the sample.
         picture: what belongs to the picture besides it.
     """
-    ground = _ground_height(sample)
+    ground = _ground_height(sample, picture.robot)
     polygon = polygon_of(sample, picture.robot)
     marks = [
         *_com(sample, ground),
@@ -87,7 +87,10 @@ def overlays(sample: Sample, picture: Picture) -> list[Mark]:
     return [mark for mark in marks if all(math.isfinite(x) for point in mark.points for x in point)]
 
 
-def _ground_height(sample: Sample) -> float:
+def _ground_height(sample: Sample, robot: RobotModel) -> float:
+    """Height of the ground under the feet; the floor, when no foot is on it, m."""
+    if not carrying_feet(sample, robot.mass):
+        return 0.0
     return float(sample["sole_pose"][:, 2].min())
 
 

@@ -31,6 +31,7 @@ class Panels:
         post: where events go.
         tell: shows a person what was wrong.
         look: turns the camera to a named view.
+        redraw: asks for a new picture.
         choices: robots and scenarios to choose from.
         truth: what is the case at the start.
     """
@@ -41,6 +42,7 @@ class Panels:
         post: Post,
         tell: Callable[[str], None],
         look: Callable[[str], None],
+        redraw: Callable[[], None],
         choices: Choices,
         truth: Truth,
     ) -> None:
@@ -53,11 +55,11 @@ class Panels:
         self.status = StatusBar(gui, post)
         group = gui.add_tab_group()
         with group.add_tab("Push", viser.Icon.HAND_MOVE):
-            self.push = PushPanel(gui, post, tell)
+            self.push = PushPanel(gui, post, tell, redraw)
         with group.add_tab("Control", viser.Icon.ADJUSTMENTS):
             self.control = ControlPanel(gui, post, choices, truth)
         with group.add_tab("View", viser.Icon.EYE):
-            ViewPanel(gui, self.settings, look)
+            ViewPanel(gui, self.settings, look, redraw)
         plots = gui.add_panel()
         with plots.add_tab("Plots", viser.Icon.CHART_LINE):
             gui.add_html(
@@ -66,6 +68,6 @@ class Panels:
             self.plots = Plots(gui)
         plots.dock_left()
         plots.set_width(_LEFT)
-        if client.camera.aspect < _ROOMY:
+        if client.camera.image_width < _ROOMY * client.camera.image_height:
             plots.minimize()
         add_keys(client, post, self.push, self.status, Tabs(client, group))

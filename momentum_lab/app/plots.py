@@ -87,25 +87,39 @@ class Plots:
 
     def _draw(self, curves: Curves) -> None:
         x = _window(curves.time)
+        limits = [_held(_framed(limit)) for limit in curves.limits]
         columns = (
-            (self._places, [*(curves.points[name] for name in _POINTS), *curves.limits]),
-            (self._linear, [curves.linear[kind] for kind in _KINDS]),
-            (self._angular, [curves.angular[kind] for kind in _KINDS]),
-            (self._momenta, [curves.momentum, curves.angular_momentum]),
+            (self._places, [_framed(curves.points[name]) for name in _POINTS] + limits),
+            (self._linear, [_framed(curves.linear[kind]) for kind in _KINDS]),
+            (self._angular, [_framed(curves.angular[kind]) for kind in _KINDS]),
+            (self._momenta, [_framed(curves.momentum), _framed(curves.angular_momentum)]),
         )
         for plot, ys in columns:
-            plot.data = (x, *(_padded(y, len(x)) for y in ys), _padded(curves.pushed, len(x)))
+            plot.data = (x, *ys, _framed(curves.pushed))
 
 
 def _window(times: np.ndarray) -> np.ndarray:
-    """Times of the samples, and the end of the window where the first seconds do not fill it."""
-    end = times[0] + WINDOW
-    return np.append(times, end) if times[-1] < end else times
+    """The time axis: the samples' times between the two ends of the window."""
+    end = max(float(times[-1]), WINDOW)
+    return np.concatenate([[end - WINDOW], times, [end]])
 
 
-def _padded(values: np.ndarray, length: int) -> np.ndarray:
-    """Values up to the length of the time axis; where there are none, nothing is drawn."""
-    return np.append(values, np.full(length - len(values), np.nan))
+def _framed(values: np.ndarray) -> np.ndarray:
+    """Values over the time axis; nothing is drawn between the last one and the end of the window.
+
+    uPlot looks for the smallest and largest value from the first one on, which has to be a number.
+    """
+    first = values[0] if np.isfinite(values[0]) else 0.0
+    return np.concatenate([[first], values, [np.nan]])
+
+
+def _held(values: np.ndarray) -> np.ndarray:
+    """Values of a band, with the last one that exists where there is none: a band has no gaps."""
+    there = np.flatnonzero(np.isfinite(values))
+    if not there.size:
+        return np.zeros_like(values)
+    last = np.maximum.accumulate(np.where(np.isfinite(values), np.arange(len(values)), there[0]))
+    return np.asarray(values[last])
 
 
 def _rates() -> list[dict[str, Any]]:

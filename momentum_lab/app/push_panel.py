@@ -37,10 +37,17 @@ class PushPanel:
         gui: where they go.
         post: where events go.
         tell: shows a person what was wrong.
+        redraw: asks for a new picture.
     """
 
-    def __init__(self, gui: viser.GuiApi, post: Post, tell: Callable[[str], None]) -> None:
-        self._gui, self._post, self._tell = gui, post, tell
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        post: Post,
+        tell: Callable[[str], None],
+        redraw: Callable[[], None],
+    ) -> None:
+        self._post, self._tell, self._redraw = post, tell, redraw
         self._last: Push | None = None
         self._robot: LoadedRobot | None = None
         self._still: Sample | None = None
@@ -49,7 +56,7 @@ class PushPanel:
         self.button = gui.add_button("Push  (P)", color=(213, 94, 0), icon=viser.Icon.HAND_MOVE)
         self._size = gui.add_html("")
         self._force: Any = gui.add_slider("force (N)", 0.0, 500.0, 1.0, 200.0, hint="Peak force of the push.")
-        self._duration = gui.add_slider(
+        self._duration: Any = gui.add_slider(
             "duration (ms)", 10.0, 1000.0, 10.0, _DURATION, hint="How long the push lasts."
         )
         self._direction: Any = gui.add_slider(
@@ -66,7 +73,7 @@ class PushPanel:
         self._through_com = gui.add_checkbox(
             "through the CoM", True, hint="Push at the height of the centre of mass."
         )
-        self._height = gui.add_slider(
+        self._height: Any = gui.add_slider(
             "height (m)",
             0.1,
             2.0,
@@ -156,6 +163,8 @@ class PushPanel:
         self.repeat.on_click(lambda _: self.apply_again())
         self._presets.on_click(lambda event: self._point_to(event.target.value))
         self._through_com.on_update(lambda _: self._free_height())
+        for widget in (self._force, self._duration, self._direction, self._height, self._shape):
+            widget.on_update(lambda _: self._redraw())
 
     def _point_to(self, name: str) -> None:
         if name in _DIRECTIONS:

@@ -68,7 +68,6 @@ class RobotScene:
         """Whether the marks inside the body show."""
         for mesh in self._meshes:
             mesh.opacity = _SEE_THROUGH if on else None
-            mesh.cast_shadow = not on
 
     def remove(self) -> None:
         """Take the robot out of the scene."""

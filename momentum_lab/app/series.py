@@ -61,7 +61,7 @@ class History:
         """More samples (n, width), oldest first; those out of the window are forgotten."""
         at = self._layout.slices["time"].start
         self._rows.extend(rows)
-        while self._rows and self._rows[-1][at] - self._rows[0][at] > WINDOW:
+        while self._rows and self._rows[-1][at] - self._rows[0][at] >= WINDOW:
             self._rows.popleft()
 
     def clear(self) -> None:

@@ -23,6 +23,10 @@ from momentum_lab.app.visitor import Visitor
 from momentum_lab.errors import ServerError
 from momentum_lab.robot.catalog import robot_names
 from momentum_lab.scenario import Scenario, scenario_names
+from momentum_lab.session import Session
+
+MOST_VISITORS = 12
+"""Browser tabs at a time; each one has a process that keeps a core busy."""
 
 _HIGHEST_PORT = 65535
 
@@ -38,7 +42,7 @@ class LabServer:
 
     Raises:
         ServerError: the host or the port cannot be used.
-        RobotError: the scenario's robot or one of its meshes cannot be loaded.
+        InputError: the scenario cannot start, or a mesh of its robot is missing.
     """
 
     def __init__(
@@ -48,7 +52,7 @@ class LabServer:
         self._scenario, self._profile = scenario, profile
         warm_up()
         self._shelf = RobotShelf()
-        self._shelf.get(scenario.robot)
+        Session(scenario, self._shelf.get(scenario.robot).model, capacity=1)  # refuses what cannot start
         self._choices = Choices(
             tuple(dict.fromkeys((*robot_names(), scenario.robot))),
             tuple(dict.fromkeys((*scenario_names(), scenario.name))),
@@ -83,10 +87,7 @@ class LabServer:
         """End all sessions and give the port back."""
         with _quiet():
             self._viser.stop()
-        with self._lock:
-            remaining = list(self._visitors.values())
-            self._visitors.clear()
-        for visitor in remaining:
+        for visitor in self.visitors:
             visitor.close()
 
     def __enter__(self) -> LabServer:
@@ -102,17 +103,22 @@ class LabServer:
             if client.client_id in self._left:
                 self._left.discard(client.client_id)
                 return
+            if len(self._visitors) >= MOST_VISITORS:
+                client.add_notification("The lab is full", f"{MOST_VISITORS} tabs are open: close one.")
+                return
             self._visitors[client.client_id] = Visitor(
                 client, self._shelf, self._scenario, self._choices, self._profile
             )
 
     def _farewell(self, client: viser.ClientHandle) -> None:
         with self._lock:
-            visitor = self._visitors.pop(client.client_id, None)
+            visitor = self._visitors.get(client.client_id)
             if visitor is None:
                 self._left.add(client.client_id)  # gone before it was welcomed
-        if visitor is not None:
-            visitor.close()
+                return
+        visitor.close()
+        with self._lock:
+            del self._visitors[client.client_id]
 
 
 def serve(
@@ -133,7 +139,7 @@ def serve(
 
     Raises:
         ServerError: the host or the port cannot be used.
-        RobotError: the scenario's robot or one of its meshes cannot be loaded.
+        InputError: the scenario cannot start, or a mesh of its robot is missing.
     """
     with _ended_by_signal() as ended, LabServer(scenario, host, port, profile) as lab:
         print(f"momentum lab: {lab.url}  (Ctrl+C ends it)", flush=True)

@@ -9,8 +9,8 @@ from typing import Any
 import viser
 
 from momentum_lab.app import html
+from momentum_lab.app.camera import VIEWS
 from momentum_lab.app.marks import PRESETS, START_PRESET, STYLES
-from momentum_lab.app.world import VIEWS
 
 _TIMES = {"½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0}
 
@@ -41,10 +41,17 @@ class ViewPanel:
         gui: where they go.
         settings: what they change.
         look: turns the camera to a named view.
+        redraw: asks for a new picture.
     """
 
-    def __init__(self, gui: viser.GuiApi, settings: ViewSettings, look: Callable[[str], None]) -> None:
-        self._settings = settings
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        settings: ViewSettings,
+        look: Callable[[str], None],
+        redraw: Callable[[], None],
+    ) -> None:
+        self._settings, self._redraw = settings, redraw
         cameras = gui.add_button_group("camera", tuple(VIEWS))
         cameras.on_click(lambda event: look(event.target.value))
         presets = gui.add_button_group("marks", tuple(PRESETS))
@@ -71,22 +78,23 @@ class ViewPanel:
             return
         for key, switch in self._switches.items():
             switch.value = key in PRESETS[name]
-        self._settings.shown = set(PRESETS[name])
-        self._settings.changed = True
+        self._set("shown", set(PRESETS[name]))
 
     def _switched(self, key: str) -> Callable[[Any], None]:
         """What happens when the switch of one mark moves."""
 
         def switch(event: Any) -> None:
+            if event.client is None:
+                return  # it was a preset, not a person
             shown = self._settings.shown
-            self._settings.shown = shown | {key} if event.target.value else shown - {key}
-            self._settings.changed = True
+            self._set("shown", shown | {key} if event.target.value else shown - {key})
 
         return switch
 
     def _scale(self, name: str) -> None:
         self._set("arrow_scale", _TIMES.get(name, 1.0))
 
-    def _set(self, name: str, value: bool | float) -> None:
+    def _set(self, name: str, value: object) -> None:
         setattr(self._settings, name, value)
         self._settings.changed = True
+        self._redraw()

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import viser
 
+from momentum_lab.app.camera import LOOSE, START_VIEW, TIGHT, VIEWS, Camera
 from momentum_lab.app.control_panel import Choices
 from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
@@ -17,7 +18,7 @@ from momentum_lab.app.profile import RenderProfile
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot, RobotShelf
 from momentum_lab.app.wire import Frame, Truth, rows_of
-from momentum_lab.app.world import START_VIEW, VIEWS, add_world, look
+from momentum_lab.app.world import add_world
 from momentum_lab.errors import InputError
 from momentum_lab.events import Event
 from momentum_lab.recording import Sample
@@ -35,14 +36,14 @@ class Stage:
         loaded: the robot.
         body: its meshes in the scene.
         marks: its marks in the scene.
-        size: height of its CoM when it came on stage, m.
+        camera: what looks at it.
     """
 
     name: str
     loaded: LoadedRobot
     body: RobotScene
     marks: MarkScene
-    size: float
+    camera: Camera
 
 
 class Visitor:
@@ -70,6 +71,7 @@ class Visitor:
         self._stage: Stage | None = None
         self._panels: Panels | None = None
         self._run = -1
+        self._left = False
         self.frames = 0
         self.latest: Frame | None = None
         self._thread = threading.Thread(target=self._live, name=f"visitor-{client.client_id}", daemon=True)
@@ -92,7 +94,8 @@ class Visitor:
         self._client.add_notification("Not possible", words, auto_close_seconds=8.0, color="orange")
 
     def close(self) -> None:
-        """End the session and the drawing."""
+        """End the session and the drawing: the tab has been closed."""
+        self._left = True
         self._link.close()
         self._thread.join()
 
@@ -107,7 +110,7 @@ class Visitor:
         except Exception:
             traceback.print_exc()
             self._link.close()
-        if self._panels is not None:
+        if self._panels is not None and not self._left:
             self._panels.status.end()
 
     def _draw(self, frame: Frame) -> None:
@@ -134,14 +137,17 @@ class Visitor:
             self._stage.marks.remove()
         size = float(sample["com"][2])
         body = RobotScene(self._client, loaded, sample["q"])
-        self._stage = Stage(truth.robot, loaded, body, MarkScene(self._client, size), size)
+        marks, camera = MarkScene(self._client, size), Camera(self._client, size)
+        self._stage = Stage(truth.robot, loaded, body, marks, camera)
         self._look(START_VIEW)
         if self._panels is not None:
             self._receive(self._panels, self._stage)
         return self._stage
 
     def _furnish(self, truth: Truth) -> Panels:
-        self._panels = Panels(self._client, self.post, self.tell, self._look, self._choices, truth)
+        self._panels = Panels(
+            self._client, self.post, self.tell, self._look, self._link.want_frame, self._choices, truth
+        )
         if self._stage is not None:
             self._receive(self._panels, self._stage)
         return self._panels
@@ -161,6 +167,7 @@ class Visitor:
             stage.loaded.model, truth.push, truth.gains.get("safe_border", 0.0), settings.arrow_scale
         )
         stage.body.draw(sample["q"])
+        stage.camera.follow(sample["com"][:2], LOOSE if truth.fall is None else TIGHT)
         stage.marks.draw(overlays(sample, picture), settings.shown, settings.labels)
 
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
@@ -181,4 +188,4 @@ class Visitor:
         """Turn the camera to the robot where it is now."""
         stage = self._stage
         if stage is not None and name in VIEWS:
-            look(self._client, VIEWS[name], stage.size, stage.body.place_on_ground)
+            stage.camera.look(name, stage.body.place_on_ground)

@@ -13,6 +13,10 @@ class FrameTaken(msgspec.Struct, frozen=True, tag=True):
     """The last frame has been drawn; the next one may be sent."""
 
 
+class FrameWanted(msgspec.Struct, frozen=True, tag=True):
+    """The picture has to be drawn again although nothing has happened in the session."""
+
+
 class Fallen(msgspec.Struct, frozen=True):
     """When and why the robot has fallen."""
 
@@ -72,7 +76,7 @@ class Frame(msgspec.Struct, frozen=True):
     notices: tuple[str, ...] = ()
 
 
-Message = events.Event | FrameTaken
+Message = events.Event | FrameTaken | FrameWanted
 
 _encoder = msgspec.msgpack.Encoder()
 _message_decoder = msgspec.msgpack.Decoder(Message)

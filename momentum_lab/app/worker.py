@@ -17,7 +17,7 @@ from threadpoolctl import threadpool_limits
 
 from momentum_lab.app.pacer import Pacer
 from momentum_lab.app.playback import Playback
-from momentum_lab.app.wire import Frame, FrameTaken, packed, unpacked_message
+from momentum_lab.app.wire import Frame, FrameTaken, FrameWanted, packed, unpacked_message
 from momentum_lab.errors import LabError
 from momentum_lab.events import Event, Play, SetSpeed
 from momentum_lab.scenario import Scenario
@@ -86,10 +86,13 @@ class Worker:
     def _receive(self) -> None:
         """One message out of the pipe."""
         message = unpacked_message(self._connection.recv_bytes())
-        if isinstance(message, FrameTaken):
-            self._taken = True
-        else:
-            self._take(message)
+        match message:
+            case FrameTaken():
+                self._taken = True
+            case FrameWanted():
+                self._news = True
+            case _:
+                self._take(message)
 
     def _take(self, event: Event) -> None:
         playback = self._playback

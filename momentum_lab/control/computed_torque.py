@@ -41,7 +41,7 @@ class ComputedTorqueGains:
         4.0, "1/s^2", 0.0, 60.0, "K_theta: how strongly the pelvis is turned upright; an extension of Eq. 37."
     )
     momentum_weight: float = gain(
-        0.99, "1", 0.5, 0.9999, "w_b: momentum against posture where both cannot be met (Eq. 34)."
+        0.9999, "1", 0.5, 0.99999, "w_b: momentum against posture where both cannot be met (Eq. 34)."
     )
     posture_stiffness: float = gain(
         100.0, "1/s^2", 0.0, 400.0, "How strongly the upper body is pulled to its posture (Eq. 34)."

@@ -25,7 +25,7 @@ _COM = np.zeros(3)
 _FACETS = 8
 # Stage 1: weights of the angular rate against the force, and of small forces against both.
 _ANGULAR_WEIGHT = 0.02
-_SMALL_FORCE_WEIGHT = 1e-3
+_SMALL_FORCE_WEIGHT = 1e-4
 # Stage 2: what a metre of CoP shift and a newton metre of normal moment cost, against a newton metre of error.
 _COP_SHIFT_WEIGHT = 0.03
 _NORMAL_MOMENT_WEIGHT = 0.003

@@ -158,9 +158,9 @@ def test_every_program_of_a_push_is_solved_like_the_reference_solves_it(robot, p
     assert compared > 5
 
 
-def test_no_motion_along_the_feet_is_better(robot, rng):
-    """Eq. 34's objective, written out here, rises in every direction that keeps the feet still."""
-    dynamics = swaying(robot, rng, speed=0.1)
+def test_the_answer_is_the_minimum_of_the_objective(robot, rng):
+    """Eq. 34's objective, written out here, is flat in every direction that keeps the feet still."""
+    dynamics = swaying(robot, rng, speed=0.2)
     reference, feet = goal(robot, dynamics), feet_for(robot, dynamics, modest_rate(robot, rng))
     best = accelerations_for(robot, dynamics, feet, reference, WEIGHTS)
     per_inertia = np.linalg.inv(dynamics.locked_inertia)
@@ -177,25 +177,24 @@ def test_no_motion_along_the_feet_is_better(robot, rng):
         return 0.99 * momentum + 0.01 * (upper + trunk) + 1e-6 * a @ a
 
     free = null_space(dynamics.sole_jacobian.reshape(-1, robot.nv))
-    here = objective(best)
-    for _ in range(50):
-        direction = free @ rng.normal(size=free.shape[1])
-        direction /= np.linalg.norm(direction)
-        assert objective(best + 0.1 * direction) > here - 1e-9
-        assert objective(best - 0.1 * direction) > here - 1e-9
+    for direction in free.T:
+        slope = (objective(best + 0.1 * direction) - objective(best - 0.1 * direction)) / 0.2
+        assert abs(slope) < 1e-5
 
 
 def test_a_joint_brakes_before_its_limit(robot):
-    """Near its limit and moving towards it, a joint is given at most the critically damped acceleration."""
+    """Near its limit, moving towards it and wanted beyond it: the critically damped acceleration, not more."""
     dynamics = home(robot)
     joint = robot.upper_body[0]
     q, v = dynamics.state.q.copy(), np.zeros(robot.nv)
     q[7 + joint] = robot.position_upper[joint] - 0.01
     v[6 + joint] = 0.3
     close = robot.at(State(q, v))
-    reference = dataclasses.replace(goal(robot, close), posture=np.full(robot.na, 0.5))
+    posture = q[7:].copy()
+    posture[joint] += 1.0
+    reference = dataclasses.replace(goal(robot, close), posture=posture)
     a = accelerations_for(robot, close, feet_for(robot, close, np.zeros(6)), reference, WEIGHTS)
-    assert a[6 + joint] <= 25.0**2 * 0.01 - 2 * 25.0 * 0.3 + 1e-3
+    assert a[6 + joint] == pytest.approx(25.0**2 * 0.01 - 2 * 25.0 * 0.3, abs=1e-2)
 
 
 def test_the_answer_turns_with_the_robot(robot, rng):

@@ -29,9 +29,9 @@ def desired_force(session: Session) -> np.ndarray:
 
 
 def is_saturated(session: Session) -> np.ndarray:
-    """Ticks in which the desired CoP is out of the safe polygon (N,)."""
+    """Ticks in which the desired CoP is out of the safe polygon: a tenth of a millimetre of it is given up (N,)."""
     column = session.recording.column
-    return np.linalg.norm(column("cop_desired") - column("cop_admissible"), axis=1) > 1e-6
+    return np.linalg.norm(column("cop_desired") - column("cop_admissible"), axis=1) > 0.1 * MM
 
 
 def one_push(robot, seconds=2.5, start=PUSH_START, priority=0.0, stance=(), **push) -> Scenario:

@@ -1,0 +1,114 @@
+"""From where a browser tab looks at the robot, and how the view goes along when the robot does."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import viser
+
+_FIELD_OF_VIEW = math.radians(32.0)
+# Below this width over height the controls cover the lower part of the picture.
+_NARROW = 0.62
+_COVERED = 0.62
+_USUAL_ASPECT = 1.5
+# How far the robot may move before the view goes along, in CoM heights: while it stands, and when it has fallen.
+LOOSE, TIGHT = 0.35, 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """Where a camera stands, for a robot whose CoM is one metre high and above the origin.
+
+    Attributes:
+        azimuth: from where it looks, degrees about the vertical; 0 from the front, 90 from the robot's left.
+        elevation: how far from above, degrees.
+        low: height of the lowest thing to see, m.
+        high: height of the highest thing to see, m.
+        width: width of what is to be seen, m.
+    """
+
+    azimuth: float
+    elevation: float
+    low: float
+    high: float
+    width: float
+
+
+VIEWS = {
+    "Whole robot": View(azimuth=-62.0, elevation=11.0, low=-0.12, high=2.05, width=1.5),
+    "Feet": View(azimuth=-62.0, elevation=32.0, low=-0.2, high=0.3, width=0.62),
+    "Side": View(azimuth=-90.0, elevation=4.0, low=-0.12, high=2.05, width=1.5),
+    "Front": View(azimuth=0.0, elevation=8.0, low=-0.12, high=2.05, width=1.5),
+}
+START_VIEW = "Whole robot"
+
+
+class Camera:
+    """The camera of one browser tab; people may turn it at any time.
+
+    Args:
+        client: the browser tab.
+        size: height of the robot's CoM, m.
+    """
+
+    def __init__(self, client: viser.ClientHandle, size: float) -> None:
+        self._client, self._size = client, size
+        self._center = np.zeros(2)
+
+    def look(self, name: str, center: np.ndarray) -> None:
+        """Take a named view of a robot above a point on the ground (2,), m."""
+        target, position = camera_pose(VIEWS[name], self._size, center, _aspect(self._client))
+        self._center = center
+        self._client.camera.fov = _FIELD_OF_VIEW
+        self._client.camera.position = position
+        self._client.camera.look_at = target
+
+    def follow(self, center: np.ndarray, leash: float) -> None:
+        """Go along with a robot that gets out of the picture.
+
+        Args:
+            center: a point on the ground below the robot (2,), m.
+            leash: how far it may go, in CoM heights.
+        """
+        way = center - self._center
+        distance = float(np.linalg.norm(way))
+        slack = leash * self._size
+        position = self._client.camera.position
+        if not distance > slack or not np.isfinite(position).all():
+            return
+        step = way * (1.0 - slack / distance)
+        self._center = self._center + step
+        self._client.camera.position = position + np.append(step, 0.0)
+
+
+def _aspect(client: viser.ClientHandle) -> float:
+    """Width over height of the picture, as the browser tells it."""
+    width, height = client.camera.image_width, client.camera.image_height
+    return width / height if width > 0 and height > 0 else _USUAL_ASPECT
+
+
+def camera_pose(view: View, size: float, center: np.ndarray, aspect: float) -> tuple[np.ndarray, np.ndarray]:
+    """Target and position (3,) of a camera that sees everything a view wants to show.
+
+    Args:
+        view: from where, and how much.
+        size: height of the robot's CoM, m.
+        center: a point on the ground below the robot (2,), m.
+        aspect: width over height of the picture.
+    """
+    free = 1.0 - _COVERED if aspect < _NARROW else 1.0
+    height = max((view.high - view.low) / free, view.width / aspect) * size
+    middle = 0.5 * (view.high + view.low) * size
+    target = np.array([center[0], center[1], middle - 0.5 * (1.0 - free) * height])
+    azimuth, elevation = math.radians(view.azimuth), math.radians(view.elevation)
+    distance = 0.5 * height / math.tan(0.5 * _FIELD_OF_VIEW)
+    back = np.array(
+        [
+            math.cos(azimuth) * math.cos(elevation),
+            math.sin(azimuth) * math.cos(elevation),
+            math.sin(elevation),
+        ]
+    )
+    return target, target + distance * back

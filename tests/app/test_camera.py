@@ -1,0 +1,83 @@
+"""The camera sees the whole robot, in every window."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from momentum_lab.app.camera import LOOSE, TIGHT, VIEWS, Camera, camera_pose
+from tests.app.fakes import FakeClient
+
+FIELD_OF_VIEW = math.radians(32.0)
+
+
+def seen(point: np.ndarray, target: np.ndarray, position: np.ndarray, aspect: float) -> np.ndarray:
+    """Where a point is in the picture: x and y from -1 to 1, by plain pinhole geometry."""
+    forward = (target - position) / np.linalg.norm(target - position)
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    up = np.cross(right, forward)
+    ray = point - position
+    depth, scale = ray @ forward, math.tan(FIELD_OF_VIEW / 2)
+    return np.array([ray @ right / depth / scale / aspect, ray @ up / depth / scale])
+
+
+@pytest.mark.parametrize("aspect", [0.46, 0.75, 1.6, 2.4])
+@pytest.mark.parametrize("size", [0.66, 0.88])
+def test_a_standing_robot_fits(aspect, size):
+    center = np.array([100.0, -3.0])
+    target, position = camera_pose(VIEWS["Whole robot"], size, center, aspect)
+    for height in (0.0, 1.9 * size):
+        for side in (-0.3, 0.3):
+            point = np.array([100.0, -3.0 + side * size, height])
+            assert np.abs(seen(point, target, position, aspect)).max() < 1.0
+
+
+def test_on_a_phone_the_robot_is_above_the_controls():
+    target, position = camera_pose(VIEWS["Whole robot"], 0.88, np.zeros(2), 390 / 844)
+    assert seen(np.zeros(3), target, position, 390 / 844)[1] > 0.2
+
+
+def test_a_push_forward_points_to_the_right_of_the_picture():
+    target, position = camera_pose(VIEWS["Whole robot"], 0.88, np.zeros(2), 1.0)
+    ahead = seen(np.array([0.3, 0.0, 0.9]), target, position, 1.0)
+    assert ahead[0] > 0.1
+
+
+def test_looking_sets_the_camera():
+    client = FakeClient()
+    Camera(client, 0.88).look("Side", np.array([1.0, 2.0]))
+    assert client.camera.look_at[:2] == pytest.approx([1.0, 2.0])
+    assert client.camera.position[1] < 2.0
+    assert client.camera.position[0] == pytest.approx(1.0)
+
+
+def test_the_view_goes_along_only_when_the_robot_leaves():
+    client = FakeClient()
+    camera = Camera(client, 1.0)
+    camera.look("Side", np.zeros(2))
+    before = client.camera.position.copy()
+    camera.follow(np.array([0.3, 0.0]), LOOSE)
+    assert np.array_equal(client.camera.position, before)
+    camera.follow(np.array([1.0, 0.0]), LOOSE)
+    assert client.camera.position - before == pytest.approx([1.0 - LOOSE, 0.0, 0.0])
+    camera.follow(np.array([1.0, 0.0]), TIGHT)
+    assert client.camera.position - before == pytest.approx([1.0 - TIGHT, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("position", [np.nan, np.inf])
+def test_a_camera_that_a_client_has_broken_is_left_alone(position):
+    client = FakeClient()
+    camera = Camera(client, 1.0)
+    client.camera.position = np.full(3, position)
+    camera.follow(np.array([5.0, 0.0]), LOOSE)
+    assert not np.isfinite(client.camera.position).any()
+
+
+def test_a_window_without_height_has_a_usual_shape():
+    client = FakeClient()
+    client.camera.image_height = 0
+    Camera(client, 0.88).look("Whole robot", np.zeros(2))
+    assert np.isfinite(client.camera.position).all()

@@ -1,0 +1,88 @@
+"""The control tab: sliders from declarations, choices, and what has changed."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+
+from momentum_lab.app.control_panel import Choices, ControlPanel, changed_gains
+from momentum_lab.app.playback import Playback
+from momentum_lab.control.computed_torque import ComputedTorqueGains
+from momentum_lab.control.gains import GainInfo, declared_gains
+from momentum_lab.events import LoadScenario, SelectRobot, SetGain, SetPriority
+from momentum_lab.scenario import Scenario
+from tests.app.fakes import FakeGui
+
+DECLARED = declared_gains(ComputedTorqueGains())
+
+
+class Desk:
+    def __init__(self) -> None:
+        self.gui, self.posted = FakeGui(), []
+        self.truth = Playback(Scenario("stand")).truth(1.0)
+        choices = Choices(("talos", "g1"), ("stand", "one-leg"))
+        self.panel = ControlPanel(self.gui, self.posted.append, choices, self.truth)
+        self.panel.follow(self.truth)
+
+    def slider(self, gain: GainInfo):
+        words = gain.name.replace("_", " ")
+        return next(w for label, w in self.gui.widgets.items() if label.split(" (")[0] == words)
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+@pytest.mark.parametrize("gain", DECLARED.values(), ids=lambda gain: gain.name)
+def test_every_gain_has_a_slider_with_its_range_and_help(desk, gain):
+    slider = desk.slider(gain)
+    assert (slider.min, slider.max, slider.value) == (gain.low, gain.high, gain.default)
+    assert gain.help in slider.hint
+    assert f"default {gain.default:g}" in slider.hint
+
+
+def test_a_slider_sets_its_gain(desk):
+    desk.slider(DECLARED["linear_damping"]).set_by_person(12.0)
+    assert desk.posted == [SetGain("linear_damping", 12.0)]
+
+
+def test_the_priority_slider_has_words_at_its_ends(desk):
+    desk.gui.widgets["priority"].set_by_person(0.25)
+    assert desk.posted == [SetPriority(0.25)]
+    text = " ".join(handle.content for handle in desk.gui.html)
+    assert "hold the CoM" in text
+    assert "hold the posture" in text
+
+
+def test_choices(desk):
+    desk.gui.widgets["robot"].set_by_person("g1")
+    desk.gui.widgets["scenario"].set_by_person("one-leg")
+    desk.gui.widgets["Start the scenario again"].set_by_person(True)
+    assert desk.posted == [SelectRobot("g1"), LoadScenario("one-leg"), LoadScenario("stand")]
+
+
+def test_widgets_follow_the_session(desk):
+    gains = {**desk.truth.gains, "friction": 0.3}
+    desk.panel.follow(msgspec.structs.replace(desk.truth, priority=0.6, robot="g1", gains=gains))
+    assert desk.gui.widgets["priority"].value == 0.6
+    assert desk.gui.widgets["robot"].value == "g1"
+    assert desk.slider(DECLARED["friction"]).value == 0.3
+    assert desk.posted == []
+
+
+def test_what_changed_is_told_and_can_be_undone(desk):
+    gains = {**desk.truth.gains, "friction": 0.3}
+    desk.panel.follow(msgspec.structs.replace(desk.truth, gains=gains))
+    assert "friction: 0.6 → 0.3" in desk.gui.html[-1].content
+    desk.gui.widgets["Reset the gains"].set_by_person(True)
+    assert desk.posted == [SetGain("friction", DECLARED["friction"].default)]
+    desk.panel.follow(desk.truth)
+    assert "defaults" in desk.gui.html[-1].content
+
+
+def test_changes_have_units():
+    values = {name: gain.default for name, gain in DECLARED.items()}
+    values["linear_damping"] = 12.0
+    default = DECLARED["linear_damping"].default
+    assert changed_gains(DECLARED.values(), values) == [f"linear damping: {default:g} → 12 1∕s"]

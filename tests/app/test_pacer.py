@@ -1,0 +1,65 @@
+"""Simulated time follows the clock, and never catches up in a burst."""
+
+from __future__ import annotations
+
+import pytest
+
+from momentum_lab.app.pacer import Pacer
+
+
+def run(pacer: Pacer, start: float, seconds: float, every: float, most: int = 10**9) -> int:
+    """Ticks done when the loop looks at the clock every so often and manages at most so many ticks a time."""
+    total, now = 0, start
+    for _ in range(round(seconds / every)):
+        now += every
+        ticks = min(pacer.due(now), most)
+        pacer.done(ticks)
+        pacer.real_time_factor(now)
+        total += ticks
+    return total
+
+
+@pytest.mark.parametrize(("speed", "ticks"), [(1.0, 2000), (0.5, 1000), (0.125, 250)])
+def test_ticks_per_second(speed, ticks):
+    pacer = Pacer(1e-3)
+    pacer.start(100.0, speed)
+    assert run(pacer, 100.0, 2.0, 0.004) == pytest.approx(ticks, abs=1)
+
+
+def test_nothing_is_due_at_the_start():
+    pacer = Pacer(1e-3)
+    pacer.start(5.0, 1.0)
+    assert pacer.due(5.0) == 0
+    assert pacer.wait(5.0) == pytest.approx(1e-3)
+    assert pacer.due(5.0 + pacer.wait(5.0)) == 1
+
+
+def test_a_short_stall_is_caught_up():
+    pacer = Pacer(1e-3)
+    pacer.start(0.0, 1.0)
+    assert pacer.due(0.05) == 50
+
+
+def test_a_long_stall_is_not_caught_up():
+    pacer = Pacer(1e-3)
+    pacer.start(0.0, 1.0)
+    due = pacer.due(3.0)
+    assert due < 100
+    pacer.done(due)
+    assert pacer.due(3.001) == 1
+
+
+def test_a_machine_that_is_too_slow_slows_simulated_time():
+    pacer = Pacer(1e-3)
+    pacer.start(0.0, 1.0)
+    assert run(pacer, 0.0, 4.0, 0.008, most=4) == 2000
+    assert pacer.real_time_factor(4.008) == pytest.approx(0.5, abs=0.02)
+
+
+def test_real_time_factor_follows_the_last_second():
+    pacer = Pacer(1e-3)
+    pacer.start(0.0, 1.0)
+    run(pacer, 0.0, 3.0, 0.004, most=1)
+    assert pacer.real_time_factor(3.004) == pytest.approx(0.25, abs=0.01)
+    run(pacer, 3.0, 2.0, 0.004)
+    assert pacer.real_time_factor(5.004) == pytest.approx(1.0, abs=0.06)

@@ -1,0 +1,62 @@
+"""What goes through the pipe comes out the same."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+import pytest
+
+from momentum_lab import events
+from momentum_lab.app.playback import Playback
+from momentum_lab.app.wire import (
+    Frame,
+    FrameTaken,
+    FrameWanted,
+    packed,
+    rows_of,
+    unpacked_frame,
+    unpacked_message,
+)
+from momentum_lab.physics.push import Push
+from momentum_lab.scenario import Scenario
+
+EVENTS = [
+    events.SetGain("friction", 0.5),
+    events.SetPriority(0.25),
+    events.SelectController("computed-torque"),
+    events.ApplyPush(Push(force=217.0, body="head", shape="half-sine")),
+    events.Reset(),
+    events.Play(),
+    events.Pause(),
+    events.StepOnce(7),
+    events.SetSpeed(0.5),
+    events.SelectRobot("g1"),
+    events.LoadScenario("stand"),
+]
+
+
+@pytest.mark.parametrize("message", [*EVENTS, FrameTaken(), FrameWanted()], ids=lambda m: type(m).__name__)
+def test_messages(message):
+    assert unpacked_message(packed(message)) == message
+
+
+def test_every_event_is_here():
+    named = {cls.__name__ for cls in events.Event.__args__}
+    assert {type(event).__name__ for event in EVENTS} == named
+
+
+def test_frames():
+    playback = Playback(Scenario("s", robot="g1"))
+    row = playback.latest.row
+    frame = Frame(playback.truth(0.99), row.tobytes(), np.vstack([row, row]).tobytes(), ("a", "b"))
+    back = unpacked_frame(packed(frame))
+    assert back == frame
+    assert np.array_equal(rows_of(back.row, row.size), row[None], equal_nan=True)
+    assert rows_of(back.history, row.size).shape == (2, row.size)
+
+
+def test_foreign_bytes_are_refused():
+    with pytest.raises(msgspec.DecodeError):
+        unpacked_message(b"\xc1")
+    with pytest.raises(msgspec.ValidationError):
+        unpacked_message(msgspec.msgpack.encode({"type": "Explode"}))
