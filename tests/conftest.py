@@ -6,6 +6,8 @@ import warnings
 
 import numpy as np
 import pytest
+import scipy.linalg  # noqa: F401 - brings a BLAS of its own, to be limited like numpy's
+import threadpoolctl
 
 with warnings.catch_warnings():
     # Pinocchio 3.8 itself imports its collision library under the old name.
@@ -14,6 +16,9 @@ with warnings.catch_warnings():
 
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
+
+# Matrices of this size are done before a second thread has woken up; two of them only get in each other's way.
+threadpoolctl.threadpool_limits(1, user_api="blas")
 
 ROBOTS = ("talos", "g1")
 STATES_PER_ROBOT = 50

@@ -1,0 +1,99 @@
+"""The lab's page as a person uses it: keys, sliders, buttons, and what can be read and seen."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+from playwright.sync_api import Locator, Page, expect
+
+# Drawing in software on a busy machine takes its time, ms.
+PATIENCE = 60_000
+# The canvas between the docked panels of a page of 1280 pixels.
+CANVAS = {"x": 380, "y": 10, "width": 520, "height": 780}
+
+
+class LabPage:
+    """A page of the lab."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+
+    def until_furnished(self) -> LabPage:
+        """Wait until the panels and the robot are there."""
+        expect(self.page.get_by_role("button", name="Push (P)")).to_be_visible(timeout=PATIENCE)
+        self.dismiss_notices()
+        return self
+
+    def dismiss_notices(self) -> None:
+        """Close what covers the picture: the browser's warning that it draws in software."""
+        close = "document.querySelectorAll('.mantine-Notification-closeButton').forEach(b => b.click())"
+        self.page.evaluate(close)
+        expect(self.page.locator(".mantine-Notification-root")).to_have_count(0, timeout=PATIENCE)
+
+    @property
+    def status(self) -> Locator:
+        """The line that says how the robot is doing."""
+        return self.page.locator("[data-status]")
+
+    def expect_status(self, words: str) -> None:
+        expect(self.status).to_contain_text(re.compile(words), timeout=PATIENCE)
+
+    def expect_text(self, words: str) -> None:
+        expect(self.page.get_by_text(re.compile(words)).first).to_be_visible(timeout=PATIENCE)
+
+    def press(self, *keys: str) -> None:
+        for key in keys:
+            self.page.keyboard.press(key)
+
+    def click(self, name: str) -> None:
+        """Press a button, by script: a page that draws in software is slow to say that it stands still."""
+        self.page.get_by_role("button", name=name, exact=True).first.evaluate("b => b.click()")
+
+    def slide(self, label: str, key: str) -> None:
+        """Focus the slider of a label and press a key on it."""
+        row = self.page.locator(f"label:text-is('{label}')").first
+        uuid = row.get_attribute("for", timeout=PATIENCE)
+        slider = self.page.locator(f"[id='{uuid}'] [role=slider]").first
+        slider.evaluate("s => s.focus()")
+        self.press(key)
+
+    def curve(self, plot: int, series: int) -> np.ndarray:
+        """The numbers of one curve, as the page draws them."""
+        script = """([plot, series]) => {
+            const plots = Object.values(window.__viserTestpoints?.uplots ?? {});
+            return plots.length > plot ? Array.from(plots[plot].chart.data[series]) : [];
+        }"""
+        values: list[Any] = self.page.evaluate(script, [plot, series])
+        return np.array([value for value in values if value is not None], dtype=float)
+
+    def com_travel(self) -> float:
+        """How far the CoM has moved along the push, cm."""
+        com = self.curve(0, 1)
+        return float(np.nanmax(com) - np.nanmin(com)) if com.size else 0.0
+
+    def expect_com_travel(self, least: float) -> None:
+        for _ in range(PATIENCE // 200):
+            if self.com_travel() >= least:
+                return
+            self.page.wait_for_timeout(200)
+        raise AssertionError(f"the CoM has moved {self.com_travel():.2f} cm, not {least} cm")
+
+    def picture(self, clip: dict[str, int] | None = None) -> np.ndarray:
+        """The page, or a part of it, once two pictures in a row are the same (h, w, 3)."""
+        last = b""
+        for _ in range(60):
+            data = self.page.screenshot(clip=clip, timeout=PATIENCE)
+            if data == last:
+                break
+            last = data
+            self.page.wait_for_timeout(700)
+        return np.array(Image.open(io.BytesIO(data)).convert("RGB")).astype(int)
+
+    def save(self, path: Path) -> None:
+        """Keep a picture of the page when it has come to rest."""
+        Image.fromarray(self.picture().astype(np.uint8)).save(path)

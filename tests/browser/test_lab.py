@@ -1,0 +1,167 @@
+"""A person in front of the lab: from the first picture to the second tab."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+import viser
+from playwright.sync_api import expect
+
+from momentum_lab.app.camera import START_VIEW, Camera
+from momentum_lab.app.profile import TEST
+from momentum_lab.app.status_bar import INVITATION
+from momentum_lab.app.world import add_world
+from tests.app.test_link import alive
+from tests.app.test_server import children
+from tests.browser.conftest import OUTPUT, Opener, Served
+from tests.browser.lab_page import CANVAS, PATIENCE
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.timeout(240),
+    pytest.mark.filterwarnings("ignore:Queued a:UserWarning"),
+]
+
+
+@pytest.fixture(scope="session")
+def empty_url() -> Iterator[str]:
+    """The same world and the same panels without a robot."""
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+
+    @server.on_client_connect
+    def _(client: viser.ClientHandle) -> None:
+        add_world(client, TEST)
+        Camera(client, 0.877).look(START_VIEW, np.zeros(2))
+        client.gui.main_panel.dock_right()
+        client.gui.main_panel.set_width(350.0)
+        plots = client.gui.add_panel()
+        with plots.add_tab("Plots"):
+            client.gui.add_markdown("nothing")
+        plots.dock_left()
+        plots.set_width(350.0)
+
+    yield f"http://127.0.0.1:{server.get_port()}"
+    server.stop()
+
+
+def test_a_robot_stands_in_the_picture(served: Served, empty_url: str, open_page: Opener) -> None:
+    lab = open_page(served.url).until_furnished()
+    lab.expect_status("standing")
+    lab.expect_text(re.escape(INVITATION))
+    expect(lab.page).to_have_title("Momentum lab")
+    with_robot = lab.picture(CANVAS)
+    lab.save(OUTPUT / "standing_test.png")
+    empty = open_page(empty_url)
+    expect(empty.page.get_by_text("nothing")).to_be_visible(timeout=PATIENCE)
+    empty.dismiss_notices()
+    without = empty.picture(CANVAS)
+    differs = np.abs(with_robot - without).max(axis=2) > 40
+    rows = np.flatnonzero(differs.sum(axis=1) > 10)
+    assert differs.mean() > 0.08
+    assert rows[-1] - rows[0] > 0.75 * CANVAS["height"]
+
+
+def test_a_push_a_slider_a_fall_and_a_reload(served: Served, open_page: Opener) -> None:
+    lab = open_page(served.url).until_furnished()
+    lab.click("Push (P)")
+    lab.expect_com_travel(1.0)
+    lab.expect_status("angular goal gives way by [0-9]+ N m")
+    lab.expect_status("standing")
+    lab.expect_text("Last push: 217 N for 100 ms forward")
+
+    lab.press("2")
+    lab.page.get_by_text("Gains", exact=True).evaluate("g => g.click()")
+    lab.slide("linear damping (1∕s)", "ArrowRight")
+    lab.expect_text("linear damping: [0-9.]+ → [0-9.]+ 1∕s")  # this text comes from the session
+    lab.click("Reset the gains")
+    lab.expect_text("All gains are at their defaults")
+
+    lab.press("1")
+    lab.slide("force (N)", "End")
+    lab.press("p")
+    lab.expect_status("fallen at [0-9.]+ s: ")
+    lab.save(OUTPUT / "fallen_test.png")
+    lab.click("Stand up again (R)")
+    lab.expect_status("standing")
+
+    lab.page.reload()
+    lab.until_furnished()
+    lab.expect_status("standing")
+    lab.expect_text(re.escape(INVITATION))
+
+
+def test_the_second_tab_has_a_robot_of_its_own(served: Served, open_page: Opener) -> None:
+    first = open_page(served.url).until_furnished()
+    before = children(served.process.pid)
+    second = open_page(served.url).until_furnished()
+    (worker,) = children(served.process.pid) - before
+    second.press("p")
+    second.expect_com_travel(1.0)
+    second.expect_text("Last push")
+    first.expect_text(re.escape(INVITATION))
+    assert first.com_travel() < 0.3
+    second.page.close()
+    end = time.monotonic() + 20.0
+    while alive(worker) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert not alive(worker)
+    assert before <= children(served.process.pid)
+
+
+def test_paused_at_the_moment_that_teaches(served: Served, open_page: Opener) -> None:
+    lab = open_page(served.url).until_furnished()
+    pause_in_saturation(lab)
+    paused = lab.curve(0, 1).size
+    lab.press("j")
+    lab.expect_text("paused")
+    lab.press("3")
+    lab.click("minimal")
+    minimal = lab.picture(CANVAS)
+    lab.click("everything")
+    lab.page.wait_for_timeout(1000)
+    assert (np.abs(lab.picture(CANVAS) - minimal).max(axis=2) > 40).mean() > 0.002
+    assert lab.curve(0, 1).size <= paused + 2
+    lab.press("h")
+    lab.expect_text("How this lab works")
+
+
+def test_on_a_phone(served: Served, open_page: Opener) -> None:
+    lab = open_page(served.url, 390, 844).until_furnished()
+    pause_in_saturation(lab)
+    lab.save(OUTPUT / "phone_test.png")
+    for words in ("Push (P)", "+20 ms"):
+        box = lab.page.get_by_role("button", name=words, exact=True).first.bounding_box()
+        assert box is not None
+        assert box["x"] >= 0
+        assert box["x"] + box["width"] <= 390
+
+
+def test_pictures_for_people(served_for_people: Served, open_page: Opener) -> None:
+    lab = open_page(served_for_people.url).until_furnished()
+    lab.page.wait_for_timeout(3000)
+    lab.press("k")
+    lab.expect_text("paused")
+    lab.save(OUTPUT / "standing.png")
+    pause_in_saturation(lab)
+    lab.save(OUTPUT / "saturated.png")
+    lab.press("3")
+    lab.page.wait_for_timeout(500)
+    lab.click("Feet")
+    lab.page.wait_for_timeout(2000)
+    lab.save(OUTPUT / "feet.png")
+
+
+def pause_in_saturation(lab) -> None:
+    """Stop time 120 ms after the push began: the CoP is on the border, the CMP ahead of it."""
+    if not lab.page.get_by_role("button", name="Play", exact=True).count():
+        lab.press("k")
+    lab.expect_text("paused")
+    lab.press("p")
+    for _ in range(6):
+        lab.page.wait_for_timeout(150)
+        lab.press("l")
+    lab.expect_status("CoP on the toes: angular goal gives way")
