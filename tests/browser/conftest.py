@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, ConsoleMessage, Page, sync_playwright
 from tests.browser.lab_page import LabPage
 
 OUTPUT = Path(__file__).parent / "output"
-# Chromium without a graphics card draws WebGL in software.
+# Chromium without a graphics card draws WebGL in software; plots that it "accelerates" take all of its time.
 FLAGS = (
     "--no-sandbox",
     "--disable-quic",
@@ -26,6 +26,7 @@ FLAGS = (
     "--use-gl=angle",
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
+    "--disable-accelerated-2d-canvas",
 )
 SERVE = """
 import sys

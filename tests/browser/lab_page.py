@@ -59,6 +59,7 @@ class LabPage:
         row = self.page.locator(f"label:text-is('{label}')").first
         uuid = row.get_attribute("for", timeout=PATIENCE)
         slider = self.page.locator(f"[id='{uuid}'] [role=slider]").first
+        expect(slider).to_be_visible(timeout=PATIENCE)
         slider.evaluate("s => s.focus()")
         self.press(key)
 
@@ -95,5 +96,7 @@ class LabPage:
         return np.array(Image.open(io.BytesIO(data)).convert("RGB")).astype(int)
 
     def save(self, path: Path) -> None:
-        """Keep a picture of the page when it has come to rest."""
-        Image.fromarray(self.picture().astype(np.uint8)).save(path)
+        """Keep a picture of the whole page once its canvas has come to rest."""
+        width = self.page.viewport_size["width"] if self.page.viewport_size else 0
+        self.picture(CANVAS if width > CANVAS["x"] + CANVAS["width"] else None)
+        self.page.screenshot(path=path, timeout=PATIENCE)
