@@ -32,6 +32,9 @@ class InputError(LabError):
         self.allowed = allowed
         super().__init__(f"{argument}: got {_one_line(given)}; allowed: {_one_line(allowed)}")
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, str, str]]:
+        return type(self), (self.argument, str(self.given), self.allowed)
+
 
 class RobotError(InputError):
     """A robot that is unknown, unreadable or incomplete."""

@@ -44,7 +44,7 @@ def run_headless(session: Session, proceed: Callable[[float], bool] = _always) -
     Returns:
         The timing; what happened is in the session.
     """
-    ticks = session.recording.capacity
+    ticks = session.scenario_ticks
     tick_time = np.zeros(ticks)
     done, error = 0, None
     start = perf_counter()

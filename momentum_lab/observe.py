@@ -54,6 +54,7 @@ def observe(row: np.ndarray, at: dict[str, slice], tick: Tick) -> None:
     row[at["q"]] = dynamics.state.q
     row[at["v"]] = dynamics.state.v
     row[at["torque"]] = step.torque
+    row[at["joint_stop_torque"]] = step.stop_torque
     row[at["com"]] = dynamics.com_in_world
     row[at["com_velocity"]] = dynamics.com_velocity
     row[at["momentum"]] = dynamics.momentum
@@ -72,6 +73,7 @@ def observe(row: np.ndarray, at: dict[str, slice], tick: Tick) -> None:
     row[at["push_wrench"]] = step.push_wrench
     row[at["other_contact_wrench"]] = step.other_wrench
     row[at["equation_residual"]] = _equation_residual(tick)
+    row[at["contact_residual"]] = step.contact_residual
     row[at["solver_failed"]] = output.failure is not None
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -43,6 +44,7 @@ class Layout:
             "q": (robot.nq,),
             "v": (robot.nv,),
             "torque": (robot.na,),
+            "joint_stop_torque": (robot.na,),
             "com": (3,),
             "com_velocity": (3,),
             "momentum": (6,),
@@ -62,6 +64,7 @@ class Layout:
             "other_contact_wrench": (6,),
             "priority": (),
             "equation_residual": (),
+            "contact_residual": (),
             "solver_failed": (),
             "fallen": (),
         }
@@ -217,7 +220,7 @@ def load_trace(path: Path) -> Trace:
             arrays = {name: file[name] for name in file.files}
         joint_names, foot_names = arrays.pop("joint_names"), arrays.pop("foot_names")
         meta = json.loads(str(arrays.pop("meta")))
-    except (OSError, KeyError, ValueError, TypeError, EOFError, BadZipFile) as error:
+    except (OSError, KeyError, ValueError, TypeError, EOFError, BadZipFile, zlib.error) as error:
         raise InputError("recording", path, f"a .npz file that this lab has written ({error})") from error
     return Trace(arrays, tuple(joint_names.tolist()), tuple(foot_names.tolist()), meta)
 

@@ -49,7 +49,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         position: where on the ground the robot starts (x, y), m.
         heading_deg: where it faces, degrees about the vertical.
         engine: which physics answers.
-        seed: seed of everything random in the run.
+        seed: seed of everything random in the run; recorded, and so far nothing is random.
         timestep: length of a tick of control and physics, s.
     """
 

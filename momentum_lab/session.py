@@ -92,8 +92,7 @@ class Session:
         friction = self.robot.spec.friction if scenario.friction is None else scenario.friction
         self._ground = Ground.level(len(self.robot.soles), friction)
         self._scripted = tuple(self._checked_push(push) for push in scenario.pushes)
-        ticks = math.ceil(scenario.seconds / scenario.timestep - 1e-9)
-        self.recording = Recording(Layout.of(self.robot), capacity or ticks)
+        self.recording = Recording(Layout.of(self.robot), capacity or self.scenario_ticks)
         self.priority = scenario.priority
         self.log: list[LoggedEvent] = []
         self.ticks = 0
@@ -106,6 +105,11 @@ class Session:
     def time(self) -> float:
         """Simulated time since the robot stood up, s."""
         return self._tick_of_run * self.scenario.timestep
+
+    @property
+    def scenario_ticks(self) -> int:
+        """How many ticks the scenario lasts."""
+        return math.ceil(self.scenario.seconds / self.scenario.timestep - 1e-9)
 
     @property
     def dynamics(self) -> Dynamics:
@@ -131,8 +135,9 @@ class Session:
         dynamics = self.robot.at(self.state)
         output = self._control(dynamics)
         step = self._simulator.step(dynamics, output.torque, self.pushes, self.time)
+        self.fall = self.fall or self._fall(dynamics, step)
         sample = self._record(dynamics, output, step)
-        self._advance(dynamics, output, step)
+        self._advance(output, step)
         return sample
 
     def _drain_inbox(self) -> None:
@@ -163,9 +168,8 @@ class Session:
         row[self.recording.slices["fallen"]] = self.fall is not None
         return self.recording.latest
 
-    def _advance(self, dynamics: Dynamics, output: ControlOutput, step: Step) -> None:
+    def _advance(self, output: ControlOutput, step: Step) -> None:
         self._memory = output.memory
-        self.fall = self.fall or self._fall(dynamics, step)
         self.state = step.state
         self.ticks += 1
         self._tick_of_run += 1
@@ -184,13 +188,18 @@ class Session:
         """Refuse what cannot be done, before it is in the inbox."""
         match event:
             case SetGain(name, value):
-                with_gains(self.gains, {name: value})
+                with_gains(controller_entry(self._controller_to_be()).gains, {name: value})
             case SetPriority(value):
                 _checked_priority(value)
             case SelectController(name):
                 controller_entry(name)
             case ApplyPush(push):
                 self._checked_push(push)
+
+    def _controller_to_be(self) -> str:
+        """The controller after everything in the inbox has been done."""
+        selected = [event.name for event in self._inbox if isinstance(event, SelectController)]
+        return selected[-1] if selected else self.controller
 
     def _apply(self, event: SessionEvent) -> None:
         match event:

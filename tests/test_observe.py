@@ -148,7 +148,8 @@ def test_a_rate_that_does_not_explain_the_motion_has_a_residual(robot, session):
     rate[1] += 0.01 * robot.mass * G
     carried = np.zeros((2, 6))
     carried[:, 2] = 0.5 * robot.mass * G
-    step = Step(after, np.zeros(robot.na), carried, np.zeros(6), np.zeros(6), rate)
+    idle = np.zeros(robot.na)
+    step = Step(after, idle, idle, carried, np.zeros(6), np.zeros(6), rate, 0.0)
     layout = Layout.of(robot)
     row = np.zeros(layout.width)
     observe(row, layout.slices, Tick(robot, 0.3, 1e-3, dynamics, limp(robot, dynamics, None), step, 0.0))

@@ -297,9 +297,7 @@ KEYS: dict[str, tuple[type, ...]] = {
 
 def test_headless_run_times_every_tick_and_stops_when_told() -> None:
     clock = SimpleNamespace(ticks=0)
-    session = SimpleNamespace(
-        recording=SimpleNamespace(capacity=10), tick=lambda: setattr(clock, "ticks", clock.ticks + 1)
-    )
+    session = SimpleNamespace(scenario_ticks=10, tick=lambda: setattr(clock, "ticks", clock.ticks + 1))
     fractions: list[float] = []
 
     def proceed(fraction: float) -> bool:

@@ -47,20 +47,20 @@ class MarkScene:
         self._labels = LabelScene(client)
         self._points: dict[str, np.ndarray] = {}
 
-    def draw(self, marks: list[Mark], shown: Collection[str], labels: bool) -> None:
+    def draw(self, marks: list[Mark], shown: Collection[str], labelled: Collection[str]) -> None:
         """Show some of the marks.
 
         Args:
             marks: what exists in the present sample.
             shown: keys of the marks that are switched on.
-            labels: whether they have labels.
+            labelled: keys of those that may have a label.
         """
         present = {mark.key: mark for mark in marks if mark.key in shown}
         for key, drawing in self._drawings.items():
             drawing.show(key in present)
         for mark in present.values():
             self._draw_one(mark)
-        self._labels.draw(arrange(list(present.values()), self._size) if labels else [])
+        self._labels.draw(arrange([m for m in present.values() if m.key in labelled], self._size))
 
     def remove(self) -> None:
         """Take all marks out of the scene."""
@@ -169,7 +169,7 @@ class _Area:
             points,
             _fan(len(points)),
             color=style.color,
-            opacity=0.25,
+            opacity=0.4,
             side="double",
             cast_shadow=False,
             receive_shadow=False,

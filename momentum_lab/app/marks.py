@@ -148,3 +148,6 @@ PRESETS: dict[str, frozenset[str]] = {
     "everything": frozenset(STYLES),
 }
 START_PRESET = "teaching"
+# A small picture has room for a few labels only: what moves the robot, and what it does to it.
+ALL_LABELS = frozenset(STYLES)
+FEW_LABELS = frozenset({"com", "push", "grf", "gap"})

@@ -9,7 +9,7 @@ import viser
 from momentum_lab.app import html
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.keys import add_keys
-from momentum_lab.app.marks import PRESETS, START_PRESET, STYLES
+from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.status_bar import StatusBar
@@ -19,7 +19,7 @@ from momentum_lab.app.widgets import Post
 from momentum_lab.app.wire import Truth
 
 _RIGHT, _LEFT = 350.0, 350.0
-# Pages narrower than this, width over height, have no room for plots beside the picture.
+# Pages narrower than this, width over height, have no room for plots beside the picture or for many labels.
 _ROOMY = 1.1
 
 
@@ -51,7 +51,8 @@ class Panels:
         gui.set_panel_label("Momentum lab")
         gui.main_panel.dock_right()
         gui.main_panel.set_width(_RIGHT)
-        self.settings = ViewSettings()
+        roomy = client.camera.image_width >= _ROOMY * client.camera.image_height
+        self.settings = ViewSettings(labelled=ALL_LABELS if roomy else FEW_LABELS)
         self.status = StatusBar(gui, post)
         group = gui.add_tab_group()
         with group.add_tab("Push", viser.Icon.HAND_MOVE):
@@ -68,6 +69,6 @@ class Panels:
             self.plots = Plots(gui)
         plots.dock_left()
         plots.set_width(_LEFT)
-        if client.camera.image_width < _ROOMY * client.camera.image_height:
+        if not roomy:
             plots.minimize()
         add_keys(client, post, self.push, self.status, Tabs(client, group))

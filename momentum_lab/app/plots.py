@@ -77,12 +77,15 @@ class Plots:
 
     def add(self, rows: np.ndarray) -> None:
         """Take new samples (n, width) and draw them when it is time."""
-        if self._history is None:
-            return
-        self._history.add(rows)
-        now = self._clock()
-        if now >= self._next and len(self._history):
-            self._next = now + _PERIOD
+        if self._history is not None:
+            self._history.add(rows)
+            if self._clock() >= self._next:
+                self.draw()
+
+    def draw(self) -> None:
+        """Draw what there is."""
+        if self._history is not None and len(self._history):
+            self._next = self._clock() + _PERIOD
             self._draw(self._history.curves(self._direction))
 
     def _draw(self, curves: Curves) -> None:

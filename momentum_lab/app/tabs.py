@@ -7,8 +7,8 @@ import time
 
 import viser
 
-# The browser opens the only tab there is; so long is it alone, s.
-_ALONE = 0.12
+# The browser opens the only tab there is. So long is it alone, s: a busy browser must have time to see it.
+_ALONE = 0.35
 
 
 class Tabs:

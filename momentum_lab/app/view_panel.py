@@ -10,7 +10,7 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.camera import VIEWS
-from momentum_lab.app.marks import PRESETS, START_PRESET, STYLES
+from momentum_lab.app.marks import ALL_LABELS, PRESETS, START_PRESET, STYLES
 
 _TIMES = {"½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0}
 
@@ -21,14 +21,14 @@ class ViewSettings:
 
     Attributes:
         shown: keys of the marks that are switched on.
-        labels: whether marks have labels in the scene.
+        labelled: keys of the marks that may have a label in the scene.
         see_through: whether the robot is transparent.
         arrow_scale: length of force arrows against their natural length.
         changed: whether the next drawing has to look at all of this again.
     """
 
     shown: set[str] = field(default_factory=lambda: set(PRESETS[START_PRESET]))
-    labels: bool = True
+    labelled: frozenset[str] = ALL_LABELS
     see_through: bool = True
     arrow_scale: float = 1.0
     changed: bool = True
@@ -58,8 +58,8 @@ class ViewPanel:
         presets.on_click(lambda event: self._preset(event.target.value))
         lengths = gui.add_button_group("force arrows", tuple(_TIMES))
         lengths.on_click(lambda event: self._scale(event.target.value))
-        labels = gui.add_checkbox("labels", settings.labels)
-        labels.on_update(lambda event: self._set("labels", event.target.value))
+        labels = gui.add_checkbox("labels", bool(settings.labelled))
+        labels.on_update(lambda event: self._label(event.target.value))
         see_through = gui.add_checkbox(
             "see-through robot", settings.see_through, hint="Shows the marks inside the body."
         )
@@ -90,6 +90,9 @@ class ViewPanel:
             self._set("shown", shown | {key} if event.target.value else shown - {key})
 
         return switch
+
+    def _label(self, on: bool) -> None:
+        self._set("labelled", ALL_LABELS if on else frozenset[str]())
 
     def _scale(self, name: str) -> None:
         self._set("arrow_scale", _TIMES.get(name, 1.0))

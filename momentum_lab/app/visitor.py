@@ -168,7 +168,7 @@ class Visitor:
         )
         stage.body.draw(sample["q"])
         stage.camera.follow(sample["com"][:2], LOOSE if truth.fall is None else TIGHT)
-        stage.marks.draw(overlays(sample, picture), settings.shown, settings.labels)
+        stage.marks.draw(overlays(sample, picture), settings.shown, settings.labelled)
 
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
         truth = frame.truth
@@ -176,11 +176,14 @@ class Visitor:
         status = status_of(sample, loaded.model, fall, truth.failure, truth.stopped)
         panels.status.follow(truth, status, sample.number("time"))
         panels.control.follow(truth)
-        panels.push.see(sample)
+        if truth.fall is None:
+            panels.push.see(sample)
         panels.push.refresh()
         if truth.push is not None:
             panels.plots.along(truth.push.direction[:2])
         panels.plots.add(rows_of(frame.history, loaded.layout.width))
+        if not truth.playing:
+            panels.plots.draw()  # nothing comes later that could show the last samples
         for notice in frame.notices:
             self.tell(notice)
 

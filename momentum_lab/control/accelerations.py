@@ -15,6 +15,8 @@ from momentum_lab.robot.state import Dynamics
 
 # Keeps the program strictly convex where neither momentum nor posture decides.
 _RIDGE = 1e-6
+# Joints are to turn back this far before their mechanical stops, rad.
+_BEFORE_THE_STOP = 0.03
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,8 +175,8 @@ def _add_pelvis(
 def _joint_bounds(robot: RobotModel, dynamics: Dynamics, rate: float) -> tuple[np.ndarray, np.ndarray]:
     """Accelerations theta''_l, theta''_u (na,) that brake critically damped before the joint limits."""
     angle, braking = dynamics.state.q[7:], -2.0 * rate * dynamics.state.v[6:]
-    low = rate**2 * (robot.position_lower - angle) + braking
-    high = rate**2 * (robot.position_upper - angle) + braking
+    low = rate**2 * (robot.position_lower + _BEFORE_THE_STOP - angle) + braking
+    high = rate**2 * (robot.position_upper - _BEFORE_THE_STOP - angle) + braking
     return low, high
 
 

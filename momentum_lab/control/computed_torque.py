@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from momentum_lab.control.accelerations import AccelerationProgram, MotionWeights
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_angular_rate, desired_linear_rate
-from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture
+from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture, without_ground
 from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds
 from momentum_lab.control.gains import gain
 from momentum_lab.control.priority import Compromise, compromise
@@ -126,18 +126,29 @@ class ComputedTorque:
     ) -> ControlOutput:
         """Torques for one tick (Fig. 6); see `Controller.compute`."""
         desired = self._desired_rate(dynamics, reference, gains)
-        balance = self._balance(dynamics, desired, reference.stance, gains, priority)
+        carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.sole_height)
+        if not carrying:
+            return self._fallback(dynamics, reference, desired, "no foot is on the ground")
+        balance = self._balance(dynamics, desired, carrying, gains, priority)
         try:
-            feet = self._foot_forces(dynamics, balance, reference.stance, gains)
+            feet = self._foot_forces(dynamics, balance, carrying, gains)
             program = self._acceleration_program(reference.stance)
             acceleration = program.solve(dynamics, feet, reference, _weights(gains))
         except SolverError as error:
-            return self._fallback(dynamics, reference, desired, balance, error)
-        torque = self._inverse_dynamics(dynamics, acceleration, feet.wrench, reference.stance)
+            return self._fallback(dynamics, reference, desired, str(error))
+        torque = self._inverse_dynamics(dynamics, acceleration, feet.wrench, carrying)
         torque += _feedback(dynamics, memory, gains)
-        command = self._joint_command(dynamics, acceleration, memory)
-        cop = self._cop(dynamics, reference.stance, feet)
-        return _output(torque, acceleration, desired, balance, cop, feet, command)
+        return ControlOutput(
+            torque=torque,
+            acceleration=acceleration,
+            momentum_rate_desired=desired,
+            momentum_rate_admissible=feet.momentum_rate,
+            foot_wrench_admissible=feet.wrench,
+            cop_desired=balance.cop_desired,
+            cop_admissible=self._cop(dynamics, carrying, feet),
+            failure=None,
+            memory=self._joint_command(dynamics, acceleration, memory),
+        )
 
     def _desired_rate(
         self, dynamics: Dynamics, reference: Reference, gains: ComputedTorqueGains
@@ -207,23 +218,15 @@ class ComputedTorque:
         return JointCommand(angle, rate)
 
     def _fallback(
-        self,
-        dynamics: Dynamics,
-        reference: Reference,
-        desired: np.ndarray,
-        balance: Compromise,
-        error: SolverError,
+        self, dynamics: Dynamics, reference: Reference, desired: np.ndarray, reason: str
     ) -> ControlOutput:
-        """The posture held by joint springs, and why."""
-        return _output(
+        """The posture held by joint springs, and why; nothing is asked of the ground."""
+        nothing = without_ground(self.robot, dynamics, self.initial_memory(dynamics))
+        return replace(
+            nothing,
             torque=hold_posture(self.robot, dynamics, reference.posture),
-            acceleration=np.zeros(self.robot.nv),
-            desired=desired,
-            balance=balance,
-            cop_admissible=np.full(2, np.nan),
-            feet=FootForces(np.zeros((len(self.robot.soles), 6)), np.zeros(6)),
-            memory=self.initial_memory(dynamics),
-            failure=f"{error}; {HOLD_IN_WORDS}",
+            momentum_rate_desired=desired,
+            failure=f"{reason}; {HOLD_IN_WORDS}",
         )
 
 
@@ -243,27 +246,4 @@ def _feedback(dynamics: Dynamics, command: JointCommand, gains: ComputedTorqueGa
     state = dynamics.state
     return gains.feedback_stiffness * (command.angle - state.q[7:]) + gains.feedback_damping * (
         command.rate - state.v[6:]
-    )
-
-
-def _output(
-    torque: np.ndarray,
-    acceleration: np.ndarray,
-    desired: np.ndarray,
-    balance: Compromise,
-    cop_admissible: np.ndarray,
-    feet: FootForces,
-    memory: JointCommand,
-    failure: str | None = None,
-) -> ControlOutput:
-    return ControlOutput(
-        torque=torque,
-        acceleration=acceleration,
-        momentum_rate_desired=desired,
-        momentum_rate_admissible=feet.momentum_rate,
-        foot_wrench_admissible=feet.wrench,
-        cop_desired=balance.cop_desired,
-        cop_admissible=cop_admissible,
-        failure=failure,
-        memory=memory,
     )

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from momentum_lab.control.controller import ControlOutput
+from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -29,16 +31,20 @@ def hold_posture(robot: RobotModel, dynamics: Dynamics, posture: np.ndarray) -> 
 
 
 def limp(robot: RobotModel, dynamics: Dynamics, memory: Any) -> ControlOutput:
-    """The answer for a robot that has fallen: dampers at the joints, nothing asked of the ground.
+    """The answer for a robot that has fallen: dampers at the joints, tau = - d theta' with d as above."""
+    damping = _DAMPING_TIME * robot.effort_limit / _FULL_TORQUE_ANGLE
+    return replace(without_ground(robot, dynamics, memory), torque=-damping * dynamics.state.v[6:])
 
-    tau = - d theta' with d as above.
-    """
+
+def without_ground(robot: RobotModel, dynamics: Dynamics, memory: Any) -> ControlOutput:
+    """An answer with no torque that asks nothing of the ground: what then remains is the weight."""
     nowhere = np.full(2, np.nan)
+    weight = np.array([0.0, 0.0, -robot.mass * GRAVITY, 0.0, 0.0, 0.0])
     return ControlOutput(
-        torque=-_DAMPING_TIME * robot.effort_limit / _FULL_TORQUE_ANGLE * dynamics.state.v[6:],
+        torque=np.zeros(robot.na),
         acceleration=np.zeros(robot.nv),
-        momentum_rate_desired=np.zeros(6),
-        momentum_rate_admissible=np.zeros(6),
+        momentum_rate_desired=weight,
+        momentum_rate_admissible=weight,
         foot_wrench_admissible=np.zeros((len(robot.soles), 6)),
         cop_desired=nowhere,
         cop_admissible=nowhere,

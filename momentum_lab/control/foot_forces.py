@@ -22,6 +22,8 @@ from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
 _COM = np.zeros(3)
+# A sole this far above the ground, m, is no longer counted on; contact itself lifts less.
+_IN_THE_AIR = 0.005
 _FACETS = 8
 # Stage 1: weights of the angular rate against the force, and of small forces against both.
 _ANGULAR_WEIGHT = 0.02
@@ -112,6 +114,22 @@ class Footing:
             feet.append(StanceFoot(foot, to_ankle, rotation, lower - ankle[:2], upper - ankle[:2], ankle))
         return feet
 
+    def on_the_ground(
+        self, dynamics: Dynamics, stance: tuple[int, ...], sole_height: np.ndarray
+    ) -> tuple[int, ...]:
+        """The stance feet whose soles are near the ground: a foot in the air carries nothing.
+
+        Args:
+            dynamics: the state with everything computed.
+            stance: the feet that are meant to carry, as indices.
+            sole_height: height of the ground under each sole (F,), m.
+        """
+        return tuple(
+            foot
+            for foot in stance
+            if _lowest_corner(self.soles[foot].corners, dynamics, foot) - sole_height[foot] < _IN_THE_AIR
+        )
+
     def _safe_corners(self, foot: int, border: float) -> np.ndarray:
         """Corners of the safe rectangle in the sole frame (4, 3), m."""
         (rear, right), (front, left) = inset_rectangle(self.soles[foot].lower, self.soles[foot].upper, border)
@@ -157,6 +175,11 @@ class Footing:
             for name in (self.soles[foot.index].name for foot in feet)
         ]
         return ((3 * len(feet), "unbounded"), *(label for labels in per_foot for label in labels))
+
+
+def _lowest_corner(corners: np.ndarray, dynamics: Dynamics, foot: int) -> float:
+    """Height of the lowest corner of a sole in the world, m."""
+    return float(dynamics.sole_position[foot, 2] + (corners @ dynamics.sole_rotation[foot, 2]).min())
 
 
 def _single_cop(

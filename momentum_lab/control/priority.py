@@ -7,7 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from momentum_lab.momentum.ground import GRAVITY, cop_from_momentum_rate, ground_reaction_force
-from momentum_lab.momentum.support import nearest_in_polygon, project_on_friction_cone
+from momentum_lab.momentum.support import (
+    clamp_tangential_force,
+    nearest_in_polygon,
+    project_on_friction_cone,
+)
 
 # The ground always carries at least this part of the weight, so that a CoP exists.
 _LEAST_WEIGHT = 0.1
@@ -47,6 +51,7 @@ def compromise(
 
         f_x = ((r_x - p_x) f_z - dk_y/dt) / z_c,  f_y = ((r_y - p_y) f_z + dk_x/dt) / z_c.
 
+    Where the cone stops the tilt, f_z is kept and dk/dt gives way too.
     In between, the force is the mean of the two, weighted by the priority.
 
     Args:
@@ -73,7 +78,7 @@ def compromise(
         k_x, k_y = desired_rate[3:5].tolist()
         fz = float(force[2])
         tilted = np.array([((rx - px) * fz - k_y) / height, ((ry - py) * fz + k_x) / height, fz])
-        force = (1.0 - priority) * force + priority * _within_cone(tilted, friction, mass)
+        force = (1.0 - priority) * force + priority * clamp_tangential_force(tilted, friction)
     fx, fy, fz = force.tolist()
     dx, dy = px - rx, py - ry
     angular_rate = np.array([dy * fz + height * fy, -height * fx - dx * fz, desired_rate[5]])

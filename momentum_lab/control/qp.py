@@ -13,6 +13,14 @@ from momentum_lab.errors import SolverError
 
 _EQUALITY = 5
 _SOFT = 8
+# What DAQP answers when bounds contradict each other, and when equalities do.
+_INFEASIBLE = (-1, -6)
+_REASONS = {
+    -2: "it went in circles",
+    -3: "the problem is unbounded",
+    -4: "too many iterations",
+    -5: "not convex",
+}
 _UNBOUNDED = 1e30
 # An answer is accepted when every condition of optimality holds to this, relative to the problem's own size.
 _CERTIFIED = 1e-6
@@ -103,8 +111,10 @@ def solve(problem: QuadraticProgram) -> Solution:
     if problem.soft is not None:
         sense[problem.soft] = _SOFT
     x, _, exit_flag, info = daqp.solve(problem.hessian, problem.gradient, problem.matrix, upper, lower, sense)
-    if exit_flag < 1:
+    if exit_flag in _INFEASIBLE:
         raise SolverError(_what_stands_in_the_way(problem))
+    if exit_flag < 1:
+        raise SolverError(f"the solver stopped without an answer: {_REASONS.get(exit_flag, exit_flag)}")
     multipliers = info["lam"]
     certificate = certify(problem, x, multipliers)
     if not certificate.worst <= _CERTIFIED:

@@ -60,12 +60,12 @@ class ContactSolution:
     Attributes:
         velocity: generalized velocity at the end of the step (nv,).
         impulse: impulse of the ground on each point in the axes of its ground (n, 3), N s.
-        iterations: iterations of the solver.
+        residual: how far velocities and impulses are from the laws of contact, m/s and N s.
     """
 
     velocity: np.ndarray
     impulse: np.ndarray
-    iterations: int
+    residual: float
 
 
 def solve_contact(
@@ -97,14 +97,14 @@ def solve_contact(
         )
     free_velocity = velocity + lapack.dpotrs(factor, free_impulse, lower=1)[0]
     if not contacts.gap.size:
-        return ContactSolution(free_velocity, np.zeros((0, 3)), 0)
+        return ContactSolution(free_velocity, np.zeros((0, 3)), 0.0)
     half = lapack.dtrtrs(factor, contacts.jacobian.T, lower=1)[0]
     delassus = half.T @ half
     drift = contacts.jacobian @ free_velocity
     drift[2::3] += _closing_speed(contacts.gap, timestep)
-    impulse, iterations = _solve_cones(delassus, drift, contacts.friction)
+    impulse, residual = _solve_cones(delassus, drift, contacts.friction)
     velocity = free_velocity + lapack.dtrtrs(factor, half @ impulse, lower=1, trans=1)[0]
-    return ContactSolution(velocity, impulse.reshape(-1, 3), iterations)
+    return ContactSolution(velocity, impulse.reshape(-1, 3), residual)
 
 
 def _closing_speed(gap: np.ndarray, timestep: float) -> np.ndarray:
@@ -119,8 +119,8 @@ def _closing_speed(gap: np.ndarray, timestep: float) -> np.ndarray:
 
 def _solve_cones(
     delassus: np.ndarray, drift: np.ndarray, friction: tuple[float, ...]
-) -> tuple[np.ndarray, int]:
-    """Impulses in the friction cones with W lambda + g complementary to them."""
+) -> tuple[np.ndarray, float]:
+    """Impulses in the friction cones with W lambda + g complementary to them, and the residual of that."""
     size = drift.size
     solver = pin.ADMMContactSolver(size)
     precision = _PRECISION if len(friction) <= _POINTS_OF_SOLES else _PRECISION_LYING
@@ -128,7 +128,7 @@ def _solve_cones(
     solver.setRelativePrecision(1e-3 * precision)
     solver.setMaxIterations(_MAX_ITERATIONS)
     solver.solve(pin.DelassusOperatorDense(delassus), drift, _cones(friction), _no_compliance(size))
-    return solver.getPrimalSolution(), solver.getIterationCount()
+    return solver.getPrimalSolution(), float(solver.getAbsoluteConvergenceResidual())
 
 
 @lru_cache(maxsize=64)

@@ -44,7 +44,8 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         force: peak force, N; None when the velocity change is given.
         velocity_change: impulse divided by the robot's mass, m/s; None when the force is given.
         duration: how long it lasts, s.
-        direction_deg: where it points: 0 forward (+x), 90 left (+y), degrees.
+        direction_deg: where it points in the world: 0 along x, forward for a robot that faces there; 90 along y,
+            to its left; degrees.
         start: when it begins, s of simulated time.
         height: height of its line of action above the ground, m; None: through the centre of mass.
         body: name of the pushed body in the robot's file; None: the trunk.

@@ -10,16 +10,13 @@ from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.wrench import shift_wrench, sum_wrenches
 from momentum_lab.physics.contact import Contacts, solve_contact
 from momentum_lab.physics.ground import Ground
+from momentum_lab.physics.joint_stops import JointStops, joint_stops
 from momentum_lab.physics.push import AppliedPush, Push, apply_pushes
 from momentum_lab.physics.touch import BodyPoints, Touch, sole_touches
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
 
 _WORLD_ORIGIN = np.zeros(3)
-# A joint that has passed its limit is brought back with this time constant, s.
-_LIMIT_TIME = 0.01
-# No motor presses its joint further than this beyond the limit, rad.
-_LIMIT_GIVES_WAY = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,18 +26,22 @@ class Step:
     Attributes:
         state: the state at its end.
         torque: joint torques after the motors' limits (na,), N m.
+        stop_torque: what the ends of the joints' ranges add to them (na,), N m.
         foot_wrench: ground on each foot about the sole origin, world axes (F, 6), N and N m.
         other_wrench: ground on everything that is not a sole, about the world origin (6,), N and N m.
         push_wrench: pushes on the robot about the world origin (6,), N and N m.
         momentum_rate: sum of all external wrenches about the CoM at the start of the step (6,), N and N m.
+        contact_residual: how far the step is from the laws of contact, m/s and N s.
     """
 
     state: State
     torque: np.ndarray
+    stop_torque: np.ndarray
     foot_wrench: np.ndarray
     other_wrench: np.ndarray
     push_wrench: np.ndarray
     momentum_rate: np.ndarray
+    contact_residual: float
 
 
 class Simulator:
@@ -69,7 +70,8 @@ class Simulator:
         """
         torque = np.clip(torque, -self.robot.effort_limit, self.robot.effort_limit)
         push = apply_pushes(self.robot, self._push_data, dynamics, pushes, time, self.timestep)
-        mass_matrix, force = self._free_motion(dynamics, torque, push)
+        stops = joint_stops(self.robot, dynamics, self.timestep)
+        mass_matrix, force = _free_motion(dynamics, torque, push, stops)
         touching = sole_touches(self.robot, dynamics, self.ground)
         touching += self._bodies.touches(dynamics.state, self.ground.floor)
         solution = solve_contact(
@@ -87,36 +89,21 @@ class Simulator:
         rate = sum_wrenches(feet, dynamics.sole_position, dynamics.com_in_world)
         rate += shift_wrench(others + pushed, _WORLD_ORIGIN, dynamics.com_in_world)
         rate[2] -= self.robot.mass * GRAVITY
-        return Step(state, torque, feet, others, pushed, rate)
-
-    def _free_motion(
-        self, dynamics: Dynamics, torque: np.ndarray, push: AppliedPush | None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Mass matrix (nv, nv) and force (nv,) of the robot without contact.
-
-        A joint beyond its limit gets a spring and a damper, implicit in the step: with k = I / T^2, d = 2 I / T
-        and I the larger of H_jj and what makes the spring as strong as the motor at 0.02 rad, the joint moves
-        as if it had the inertia H_jj + dt d + dt^2 k. H_jj alone would be the inertia of a light foot under
-        the weight of the whole robot.
-        """
-        force = -dynamics.nonlinear_effects
-        force[6:] += torque
-        if push is not None:
-            force += push.generalized
-        angle = dynamics.state.q[7:]
-        excess = np.maximum(angle - self.robot.position_upper, 0.0) + np.minimum(
-            angle - self.robot.position_lower, 0.0
+        return Step(
+            state=state,
+            torque=torque,
+            stop_torque=self._stop_torque(dynamics, state, stops),
+            foot_wrench=feet,
+            other_wrench=others,
+            push_wrench=pushed,
+            momentum_rate=rate,
+            contact_residual=solution.residual,
         )
-        beyond = np.nonzero(excess)[0]
-        if not beyond.size:
-            return dynamics.mass_matrix, force
-        mass_matrix, rows, dt = dynamics.mass_matrix.copy(), beyond + 6, self.timestep
-        as_strong = self.robot.effort_limit[beyond] * _LIMIT_TIME**2 / _LIMIT_GIVES_WAY
-        inertia = np.maximum(mass_matrix[rows, rows], as_strong)
-        stiffness, damping = inertia / _LIMIT_TIME**2, 2.0 * inertia / _LIMIT_TIME
-        mass_matrix[rows, rows] += dt * damping + dt**2 * stiffness
-        force[rows] -= stiffness * excess[beyond] + (damping + dt * stiffness) * dynamics.state.v[rows]
-        return mass_matrix, force
+
+    def _stop_torque(self, dynamics: Dynamics, state: State, stops: JointStops | None) -> np.ndarray:
+        if stops is None:
+            return np.zeros(self.robot.na)
+        return stops.felt_torque((state.v - dynamics.state.v) / self.timestep)
 
     def _contact_wrenches(
         self, dynamics: Dynamics, touching: list[Touch], forces: np.ndarray
@@ -136,6 +123,22 @@ class Simulator:
                 feet[touch.foot] = _wrench_about(dynamics.sole_position[touch.foot], touch.position, force)
             first = last
         return feet, others
+
+
+def _free_motion(
+    dynamics: Dynamics, torque: np.ndarray, push: AppliedPush | None, stops: JointStops | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Mass matrix (nv, nv) and force (nv,) of the robot without contact."""
+    force = -dynamics.nonlinear_effects
+    force[6:] += torque
+    if push is not None:
+        force += push.generalized
+    if stops is None:
+        return dynamics.mass_matrix, force
+    mass_matrix = dynamics.mass_matrix.copy()
+    mass_matrix[stops.rows, stops.rows] += stops.added_inertia
+    force[stops.rows] += stops.torque
+    return mass_matrix, force
 
 
 def _together(touching: list[Touch], nv: int) -> Contacts:

@@ -86,7 +86,7 @@ class RobotSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     feet: dict[str, FootSpec]
     home: HomeSpec
     push_bodies: dict[str, str]
-    friction: Positive = 0.7
+    friction: Annotated[float, msgspec.Meta(gt=0.0, le=2.0)] = 0.7
     armature: dict[str, float] = {}
     fall_points: dict[str, tuple[Point, ...]] = {}
     sources: dict[str, str] = {}

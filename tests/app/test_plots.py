@@ -82,6 +82,15 @@ def test_ten_drawings_a_second(desk, pushed):
     assert drawn == 10
 
 
+def test_the_last_samples_before_a_pause_can_be_drawn_at_once(desk, pushed):
+    rows = pushed.recording.rows(20)
+    desk.plots.add(rows[:5])
+    desk.plots.add(rows[5:9])
+    assert len(desk.handles[0].data[0]) == 5 + 2
+    desk.plots.draw()
+    assert len(desk.handles[0].data[0]) == 9 + 2
+
+
 def test_curves_follow_the_direction_of_the_push(desk, pushed):
     rows = pushed.recording.rows(20)
     desk.plots.add(rows)

@@ -50,7 +50,9 @@ def test_labels_arrows_and_body(desk):
     desk.set("labels", False)
     desk.set("see-through robot", False)
     desk.set("force arrows", "2 ×")
-    assert (desk.settings.labels, desk.settings.see_through, desk.settings.arrow_scale) == (False, False, 2.0)
+    assert (desk.settings.labelled, desk.settings.see_through, desk.settings.arrow_scale) == (set(), False, 2)
+    desk.set("labels", True)
+    assert desk.settings.labelled == set(STYLES)
 
 
 def test_cameras(desk):

@@ -65,7 +65,8 @@ def test_every_default_lies_on_a_step(gain):
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "default", "step"), [(0, 60, 8, 0.2), (0, 1, 0, 0.005), (0, 200, 50, 1), (0, 5, 1.25, 0.01)]
+    ("low", "high", "default", "step"),
+    [(0, 60, 8, 0.2), (0, 1, 0, 0.005), (0, 200, 50, 1), (0, 5, 1.25, 0.01)],
 )
 def test_steps_are_round_numbers(low, high, default, step):
     assert nice_step(low, high, default) == pytest.approx(step)

@@ -74,6 +74,7 @@ def test_a_push_a_slider_a_fall_and_a_reload(served: Served, open_page: Opener) 
     lab.expect_text("Last push: 217 N for 100 ms forward")
 
     lab.press("2")
+    expect(lab.page.get_by_role("tab", name="Control")).to_have_attribute("aria-selected", "true")
     lab.page.get_by_text("Gains", exact=True).evaluate("g => g.click()")
     lab.slide("linear damping (1∕s)", "ArrowRight")
     lab.expect_text("linear damping: [0-9.]+ → [0-9.]+ 1∕s")  # this text comes from the session
@@ -81,6 +82,7 @@ def test_a_push_a_slider_a_fall_and_a_reload(served: Served, open_page: Opener) 
     lab.expect_text("All gains are at their defaults")
 
     lab.press("1")
+    expect(lab.page.get_by_role("tab", name="Push")).to_have_attribute("aria-selected", "true")
     lab.slide("force (N)", "End")
     lab.press("p")
     lab.expect_status("fallen at [0-9.]+ s: ")
@@ -119,16 +121,18 @@ def test_the_second_tab_has_a_robot_of_its_own(served: Served, open_page: Opener
 def test_paused_at_the_moment_that_teaches(served: Served, open_page: Opener) -> None:
     lab = open_page(served.url).until_furnished()
     pause_in_saturation(lab)
-    paused = lab.curve(0, 1).size
+    paused = lab.page.get_by_text("simulated time").inner_text()
     lab.press("j")
-    lab.expect_text("paused")
+    expect(lab.page.get_by_text("simulated time")).not_to_have_text(paused, timeout=PATIENCE)
+    paused = lab.page.get_by_text("simulated time").inner_text()
     lab.press("3")
+    expect(lab.page.get_by_role("tab", name="View")).to_have_attribute("aria-selected", "true")
     lab.click("minimal")
     minimal = lab.picture(CANVAS)
     lab.click("everything")
     lab.page.wait_for_timeout(1000)
     assert (np.abs(lab.picture(CANVAS) - minimal).max(axis=2) > 40).mean() > 0.002
-    assert lab.curve(0, 1).size <= paused + 2
+    assert lab.page.get_by_text("simulated time").inner_text() == paused
     lab.press("h")
     lab.expect_text("How this lab works")
 
@@ -153,7 +157,9 @@ def test_pictures_for_people(served_for_people: Served, open_page: Opener) -> No
     pause_in_saturation(lab)
     lab.save(OUTPUT / "saturated.png")
     lab.press("3")
-    lab.page.wait_for_timeout(500)
+    expect(lab.page.get_by_role("tab", name="View")).to_have_attribute(
+        "aria-selected", "true", timeout=PATIENCE
+    )
     lab.click("Feet")
     lab.page.wait_for_timeout(2000)
     lab.save(OUTPUT / "feet.png")

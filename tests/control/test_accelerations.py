@@ -183,7 +183,10 @@ def test_the_answer_is_the_minimum_of_the_objective(robot, rng):
 
 
 def test_a_joint_brakes_before_its_limit(robot):
-    """Near its limit, moving towards it and wanted beyond it: the critically damped acceleration, not more."""
+    """Near its limit, moving towards it and wanted beyond it: the critically damped acceleration, not more.
+
+    The joint is to turn back 0.03 rad before the stop, and is 0.02 rad beyond that point already.
+    """
     dynamics = home(robot)
     joint = robot.upper_body[0]
     q, v = dynamics.state.q.copy(), np.zeros(robot.nv)
@@ -194,7 +197,7 @@ def test_a_joint_brakes_before_its_limit(robot):
     posture[joint] += 1.0
     reference = dataclasses.replace(goal(robot, close), posture=posture)
     a = accelerations_for(robot, close, feet_for(robot, close, np.zeros(6)), reference, WEIGHTS)
-    assert a[6 + joint] == pytest.approx(25.0**2 * 0.01 - 2 * 25.0 * 0.3, abs=1e-2)
+    assert a[6 + joint] == pytest.approx(25.0**2 * (0.01 - 0.03) - 2 * 25.0 * 0.3, abs=1e-2)
 
 
 def test_the_answer_turns_with_the_robot(robot, rng):

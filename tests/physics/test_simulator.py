@@ -11,6 +11,8 @@ from momentum_lab.physics.push import Push
 from momentum_lab.physics.simulator import Simulator
 from momentum_lab.robot.posture import standing_posture
 from momentum_lab.robot.state import State
+from momentum_lab.scenario import Scenario
+from momentum_lab.session import Session
 from tests.conftest import assert_close, random_state
 
 G = 9.81
@@ -127,3 +129,27 @@ def test_a_step_depends_on_its_arguments_only(robot):
     again, fresh = used.step(dynamics, torque, (), 0.0), level_world(robot).step(dynamics, torque, (), 0.0)
     assert again.state.q.tobytes() == fresh.state.q.tobytes()
     assert again.state.v.tobytes() == fresh.state.v.tobytes()
+
+
+@pytest.mark.parametrize("name", ["talos", "g1"])
+def test_every_row_of_the_equations_of_motion_closes_with_the_stops(name, request):
+    """H a + C v + tau_g = tau + stops + J^T w after a push so hard that joints reach their ends."""
+    robot = request.getfixturevalue(name)
+    force = {"talos": 322.0, "g1": 125.0}[name]
+    session = Session(
+        Scenario("hard", robot=name, seconds=1.0, pushes=(Push(force=force, start=0.0),)), robot
+    )
+    worst, stopped = 0.0, 0
+    for _ in range(1000):
+        before = session.dynamics
+        sample = session.tick()
+        if sample["push_wrench"].any():
+            continue
+        acceleration = (session.state.v - before.state.v) / 1e-3
+        rows = before.mass_matrix @ acceleration + before.nonlinear_effects
+        rows[6:] -= sample["torque"] + sample["joint_stop_torque"]
+        rows -= np.einsum("fi,fij->j", sample["foot_wrench_measured"], before.sole_jacobian)
+        worst = max(worst, np.abs(rows).max())
+        stopped += bool(sample["joint_stop_torque"].any())
+    assert stopped > 10
+    assert worst < 1e-6
