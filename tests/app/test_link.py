@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterator
+from itertools import pairwise
 
 import pytest
 
@@ -133,9 +134,7 @@ def test_history_is_every_twentieth_tick_in_order(reader):
     width = len(reader.first.row) // 8
     while len(times) < 12:
         times += memoryview(next(reader.frames).history).cast("d")[::width].tolist()
-    assert [b - a for a, b in zip(times[:-1], times[1:], strict=True)] == pytest.approx(
-        [0.02] * (len(times) - 1)
-    )
+    assert [b - a for a, b in pairwise(times)] == pytest.approx([0.02] * (len(times) - 1))
 
 
 def test_a_reader_that_does_not_read_does_not_stop_time(reader):

@@ -209,14 +209,14 @@ def test_a_port_that_does_not_exist_is_refused(port):
 
 
 def test_a_host_that_is_not_this_machine_is_refused():
-    with pytest.raises(ServerError, match="^host: got 192.0.2.1; allowed: an address of this machine"):
+    with pytest.raises(ServerError, match=r"^host: got 192\.0\.2\.1; allowed: an address of this machine"):
         LabServer(Scenario("stand"), host="192.0.2.1")
 
 
 def test_a_scenario_that_cannot_start_is_refused():
-    with pytest.raises(InputError, match="^robot: got nobody; allowed: one of"):
+    with pytest.raises(InputError, match=r"^robot: got nobody; allowed: one of"):
         LabServer(Scenario("stand", robot="nobody"))
-    with pytest.raises(InputError, match="^stance: got middle; allowed: feet among"):
+    with pytest.raises(InputError, match=r"^stance: got middle; allowed: feet among"):
         LabServer(Scenario("stand", stance=("middle",)))
 
 
