@@ -19,6 +19,7 @@ from momentum_lab.robot.model import RobotModel
 # How often the plots are drawn, s.
 _PERIOD = 0.1
 _HEIGHT = 100
+_UNSEEN = 1e-5
 _AXIS = {"font": "10px sans-serif", "gap": 2, "ticks": {"size": 3}}
 _POINTS = ("com", "cop", "cmp", "capture")
 # What is asked for is grey and dashed, what the ground may give blue, what it gave green like the GRF.
@@ -102,8 +103,12 @@ class Plots:
 
 
 def _window(times: np.ndarray) -> np.ndarray:
-    """The time axis: the samples' times between the two ends of the window."""
-    end = max(float(times[-1]), WINDOW)
+    """The time axis: the samples' times between the two ends of the window.
+
+    uPlot lays out an axis only when its ends change; so they do, by less than can be seen, while the first
+    window fills.
+    """
+    end = max(float(times[-1]), WINDOW + _UNSEEN * len(times))
     return np.concatenate([[end - WINDOW], times, [end]])
 
 

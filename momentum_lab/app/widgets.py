@@ -38,18 +38,28 @@ class Bound(Generic[Value]):
         self._post = post
         self._clock = clock
         self._touched = -math.inf
+        self._known: Value = handle.value
         handle.on_update(self._changed)
 
     def follow(self, truth: Value) -> None:
         """Show what is the case, unless a hand has just been there."""
-        if self._clock() - self._touched > _HANDS_OFF and self.handle.value != truth:
+        if not _same(self.handle.value, self._known):
+            return  # a hand has moved it this very moment, and `_changed` is on its way
+        if self._clock() - self._touched > _HANDS_OFF and not _same(self._known, truth):
+            self._known = truth
             self.handle.value = truth
 
     def _changed(self, update: Any) -> None:
         if update.client is None:
             return  # it was `follow`, not a person
         self._touched = self._clock()
-        self._post(self._event(self.handle.value))
+        self._known = self.handle.value
+        self._post(self._event(self._known))
+
+
+def _same(one: object, other: object) -> bool:
+    """Whether two values are equal; what is not a number equals itself here."""
+    return one == other or (one != one and other != other)
 
 
 def nice_step(low: float, high: float, default: float) -> float:

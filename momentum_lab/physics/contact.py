@@ -61,11 +61,13 @@ class ContactSolution:
         velocity: generalized velocity at the end of the step (nv,).
         impulse: impulse of the ground on each point in the axes of its ground (n, 3), N s.
         residual: how far velocities and impulses are from the laws of contact, m/s and N s.
+        iterations: how many the solver has needed.
     """
 
     velocity: np.ndarray
     impulse: np.ndarray
     residual: float
+    iterations: int
 
 
 def solve_contact(
@@ -97,14 +99,20 @@ def solve_contact(
         )
     free_velocity = velocity + lapack.dpotrs(factor, free_impulse, lower=1)[0]
     if not contacts.gap.size:
-        return ContactSolution(free_velocity, np.zeros((0, 3)), 0.0)
+        return ContactSolution(free_velocity, np.zeros((0, 3)), 0.0, 0)
     half = lapack.dtrtrs(factor, contacts.jacobian.T, lower=1)[0]
     delassus = half.T @ half
     drift = contacts.jacobian @ free_velocity
     drift[2::3] += _closing_speed(contacts.gap, timestep)
-    impulse, residual = _solve_cones(delassus, drift, contacts.friction)
+    solver = _solve_cones(delassus, drift, contacts.friction)
+    impulse = solver.getPrimalSolution()
     velocity = free_velocity + lapack.dtrtrs(factor, half @ impulse, lower=1, trans=1)[0]
-    return ContactSolution(velocity, impulse.reshape(-1, 3), residual)
+    return ContactSolution(
+        velocity,
+        impulse.reshape(-1, 3),
+        residual=float(solver.getAbsoluteConvergenceResidual()),
+        iterations=int(solver.getIterationCount()),
+    )
 
 
 def _closing_speed(gap: np.ndarray, timestep: float) -> np.ndarray:
@@ -119,8 +127,8 @@ def _closing_speed(gap: np.ndarray, timestep: float) -> np.ndarray:
 
 def _solve_cones(
     delassus: np.ndarray, drift: np.ndarray, friction: tuple[float, ...]
-) -> tuple[np.ndarray, float]:
-    """Impulses in the friction cones with W lambda + g complementary to them, and the residual of that."""
+) -> pin.ADMMContactSolver:
+    """A solver that has found impulses in the friction cones with W lambda + g complementary to them."""
     size = drift.size
     solver = pin.ADMMContactSolver(size)
     precision = _PRECISION if len(friction) <= _POINTS_OF_SOLES else _PRECISION_LYING
@@ -128,7 +136,7 @@ def _solve_cones(
     solver.setRelativePrecision(1e-3 * precision)
     solver.setMaxIterations(_MAX_ITERATIONS)
     solver.solve(pin.DelassusOperatorDense(delassus), drift, _cones(friction), _no_compliance(size))
-    return solver.getPrimalSolution(), float(solver.getAbsoluteConvergenceResidual())
+    return solver
 
 
 @lru_cache(maxsize=64)

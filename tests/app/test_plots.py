@@ -51,8 +51,17 @@ def test_time_is_simulated_seconds_and_not_a_date(desk):
 def test_the_time_axis_always_spans_the_window(desk, pushed):
     desk.plots.add(pushed.recording.rows(20)[:10])
     x = desk.handles[0].data[0]
-    assert (x[0], x[-1]) == (0.0, WINDOW)
+    assert (x[0], x[-1]) == pytest.approx((0.0, WINDOW), abs=1e-3)
     assert (np.diff(x) >= 0.0).all()
+
+
+def test_the_ends_of_the_time_axis_change_with_every_drawing(desk, pushed):
+    ends = []
+    for i in range(5):
+        desk.now += 1.0
+        desk.plots.add(pushed.recording.rows(20)[i : i + 1])
+        ends.append(desk.handles[0].data[0][-1])
+    assert len(set(ends)) == 5
 
 
 def test_the_first_value_is_a_number(desk, pushed):

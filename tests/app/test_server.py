@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
+from momentum_lab.app import server
 from momentum_lab.app.bare_client import BareClient, Received
 from momentum_lab.app.profile import TEST
 from momentum_lab.app.server import LabServer
@@ -39,6 +40,7 @@ def lab() -> Iterator[LabServer]:
 def client(lab: LabServer) -> Iterator[BareClient]:
     with BareClient(lab.url) as client:
         client.read_until(furnished, PATIENCE)
+        client.read(0.3)
         yield client
     wait_for(lambda: not lab.visitors)
 
@@ -184,6 +186,13 @@ def test_closing_the_lab_ends_everything():
     with pytest.raises(OSError, match="refused"):
         socket.create_connection(("127.0.0.1", lab.port), timeout=1.0)
     client.close()
+
+
+def test_a_full_lab_says_so(client, lab, monkeypatch):
+    monkeypatch.setattr(server, "MOST_VISITORS", 1)
+    with BareClient(lab.url) as other:
+        told(other, "1 tabs are open: close one.")
+        assert len(lab.visitors) == 1
 
 
 # Addresses

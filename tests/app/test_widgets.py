@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from momentum_lab.app.widgets import Bound, nice_step
@@ -51,6 +53,21 @@ def test_the_truth_wins_when_the_hand_has_gone(hand):
     hand.handle.set_by_person(5.0)  # refused by the session
     hand.bound.follow(0.2)
     assert hand.handle.value == 5.0
+    hand.now += 1.0
+    hand.bound.follow(0.2)
+    assert hand.handle.value == 0.2
+
+
+def test_a_move_that_has_not_been_reported_yet_is_not_lost(hand):
+    # The value arrives first, its callback a moment later in another thread.
+    hand.handle.value = 0.6
+    hand.bound.follow(0.0)
+    hand.handle.set_by_person(hand.handle.value)
+    assert hand.posted == [SetPriority(0.6)]
+
+
+def test_what_is_not_a_number_gives_way_to_the_truth_too(hand):
+    hand.handle.set_by_person(math.nan)
     hand.now += 1.0
     hand.bound.follow(0.2)
     assert hand.handle.value == 0.2

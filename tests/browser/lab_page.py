@@ -72,6 +72,18 @@ class LabPage:
         values: list[Any] = self.page.evaluate(script, [plot, series])
         return np.array([value for value in values if value is not None], dtype=float)
 
+    def expect_ticks(self, plot: int) -> None:
+        """Wait until the time axis of a plot has been laid out."""
+        script = """plot => {
+            const chart = Object.values(window.__viserTestpoints?.uplots ?? {})[plot]?.chart;
+            return (chart?.axes[0]._values ?? []).filter(v => v !== null && v !== '').length;
+        }"""
+        for _ in range(PATIENCE // 200):
+            if self.page.evaluate(script, plot) >= 3:
+                return
+            self.page.wait_for_timeout(200)
+        raise AssertionError("the time axis has no figures")
+
     def com_travel(self) -> float:
         """How far the CoM has moved along the push, cm."""
         com = self.curve(0, 1)

@@ -53,6 +53,7 @@ def test_a_robot_stands_in_the_picture(served: Served, empty_url: str, open_page
     lab.expect_status("standing")
     lab.expect_text(re.escape(INVITATION))
     expect(lab.page).to_have_title("Momentum lab")
+    lab.expect_ticks(plot=0)
     with_robot = lab.picture(CANVAS)
     lab.save(OUTPUT / "standing_test.png")
     empty = open_page(empty_url)
@@ -150,6 +151,7 @@ def test_on_a_phone(served: Served, open_page: Opener) -> None:
 
 def test_pictures_for_people(served_for_people: Served, open_page: Opener) -> None:
     lab = open_page(served_for_people.url).until_furnished()
+    lab.expect_ticks(plot=3)
     lab.page.wait_for_timeout(3000)
     lab.press("k")
     lab.expect_text("paused")

@@ -1,0 +1,63 @@
+"""Keys: each does one thing, and a key that is held down does it once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from momentum_lab.app import keys
+from momentum_lab.app.keys import add_keys
+from momentum_lab.events import Reset, StepOnce
+from tests.app.fakes import FakeClient, FakeHandle
+
+
+class Desk:
+    """A client that takes commands, and everything they do."""
+
+    def __init__(self) -> None:
+        self.client, self.done = FakeClient(), []
+        self.commands: dict[str, tuple[str | None, Callable]] = {}
+        self.client.gui.add_command = self._add_command
+        note = self.done.append
+        push = FakeHandle(apply=lambda: note("push"), apply_again=lambda: note("again"))
+        status = FakeHandle(toggle=lambda: note("toggle"))
+        tabs = FakeHandle(open=lambda index: note(f"tab {index}"))
+        add_keys(self.client, note, push, status, tabs)
+
+    def _add_command(self, label: str, hotkey: str | None = None) -> FakeHandle:
+        command = FakeHandle()
+        command.on_trigger = lambda act: self.commands.update({label: (hotkey, act)})
+        return command
+
+    def press(self, key: str) -> None:
+        next(act for hotkey, act in self.commands.values() if hotkey == key)(None)
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+def test_what_each_key_does(desk):
+    for key in "PKJLR123":
+        desk.press(key)
+    assert desk.done == ["push", "toggle", StepOnce(1), StepOnce(20), Reset(), "tab 0", "tab 1", "tab 2"]
+
+
+def test_no_key_is_used_twice_and_none_that_widgets_need(desk):
+    hotkeys = [hotkey for hotkey, _ in desk.commands.values() if hotkey]
+    assert len(set(hotkeys)) == len(hotkeys)
+    assert set(hotkeys) == set("PKJLR123H")
+
+
+def test_a_key_that_is_held_down_acts_once(desk, monkeypatch):
+    now = 100.0
+    monkeypatch.setattr(keys.time, "monotonic", lambda: now)
+    for _ in range(50):
+        desk.press("P")
+        now += 0.033
+    assert desk.done == ["push"]
+    now += 0.5
+    desk.press("P")
+    assert desk.done == ["push", "push"]
