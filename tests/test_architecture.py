@@ -23,6 +23,7 @@ FLOORS: tuple[frozenset[str], ...] = (
     frozenset(
         {
             "scenario",
+            "share_code",
             "events",
             "observe",
             "recording",

@@ -109,7 +109,7 @@ def _window(times: np.ndarray) -> np.ndarray:
     window fills.
     """
     end = max(float(times[-1]), WINDOW + _UNSEEN * len(times))
-    return np.concatenate([[end - WINDOW], times, [end]])
+    return np.concatenate([[min(end - WINDOW, float(times[0]))], times, [end]])
 
 
 def _framed(values: np.ndarray) -> np.ndarray:
