@@ -36,11 +36,16 @@ def status_line(kind: str, words: str, color: str) -> str:
     )
 
 
-def time_line(time: float, real_time_factor: float, speed: float, playing: bool) -> str:
+def time_line(time: float, real_time_factor: float, speed: float, playing: bool, failures: int = 0) -> str:
     """Simulated time and how it runs, in figures that do not change their width."""
     asked = "" if speed == 1.0 else f" · speed {speed:g}"
     pace = f"{real_time_factor:.2f} × real time" if playing else "paused"
-    return f'<div class="lab n dim">simulated time <b>{time:.2f} s</b> · {pace}{asked}</div>'
+    return f'<div class="lab n dim">simulated time <b>{time:.2f} s</b> · {pace}{asked}{_failures(failures)}</div>'
+
+
+def _failures(count: int) -> str:
+    words = f"solver failed {count} ×"
+    return f' · <b style="color:{COLORS["vermillion"]}">{words}</b>' if count else ""
 
 
 def slider_ends(low: str, high: str) -> str:

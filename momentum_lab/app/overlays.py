@@ -112,7 +112,7 @@ def _support(sample: Sample, picture: Picture, polygon: np.ndarray, ground: floa
             "safe_border",
             _dashes(safe, ground),
             text=f"CoP {round(1e3 * margin)} mm from the edge" if math.isfinite(margin) else "",
-            at=_on_ground("safe_border", _leftmost(polygon), ground),
+            at=_on_ground("safe_border", _out_of_the_way(polygon, sample["com"][2]), ground),
         ),
     ]
 
@@ -220,10 +220,11 @@ def _dashes(polygon: np.ndarray, ground: float) -> tuple[Point, ...]:
     return tuple(ends)
 
 
-def _leftmost(polygon: np.ndarray) -> list[float]:
-    """The corner that is out of the way of the other labels."""
-    corner: list[float] = polygon[int(np.argmax(polygon @ _LEFT))].tolist()
-    return corner
+def _out_of_the_way(polygon: np.ndarray, size: float) -> list[float]:
+    """A place beside the polygon where no other label is."""
+    corner = polygon[int(np.argmax(polygon @ _LEFT))]
+    place: list[float] = (corner + 0.5 * _BESIDE * size * _SIDE).tolist()
+    return place
 
 
 def _on_ground(key: str, point: tuple[float, float] | list[float], ground: float) -> Point:

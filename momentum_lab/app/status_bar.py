@@ -80,7 +80,7 @@ class StatusBar:
         self._simulated = simulated
         status = self._readable(status, now, truth.playing)
         self._write("status", self._status, html.status_line(status.kind, status.words, status.color))
-        line = html.time_line(simulated, truth.real_time_factor, truth.speed, truth.playing)
+        line = html.time_line(simulated, truth.real_time_factor, truth.speed, truth.playing, truth.failures)
         self._write("time", self._time, line)
         down = truth.fall is not None or truth.stopped is not None
         self._write("sentence", self._sentence, html.sentence(_sentence(truth)))

@@ -32,6 +32,8 @@ def test_time_line():
     assert "simulated time <b>1.23 s</b> · 1.00 × real time<" in running
     slow = html.time_line(1.0, 0.25, 0.25, playing=True)
     assert "0.25 × real time · speed 0.25" in slow
+    assert "solver failed 3 ×" in html.time_line(1.0, 1.0, 1.0, playing=True, failures=3)
+    assert "solver" not in running
     assert "paused" in html.time_line(1.0, 0.25, 1.0, playing=False)
 
 
