@@ -16,7 +16,7 @@ RELATIVE = "by a relative path"
 
 # From bottom to top; a room may import itself and everything on lower floors.
 FLOORS: tuple[frozenset[str], ...] = (
-    frozenset({"", "errors", "paths"}),
+    frozenset({"", "errors", "paths", "compiled", "cholesky"}),
     frozenset({"robot"}),
     frozenset({"momentum"}),
     frozenset({"control", "physics"}),

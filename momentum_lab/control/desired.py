@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import pinocchio as pin
 
 from momentum_lab.control.controller import Reference
+from momentum_lab.robot.rotation import rotation_error
 from momentum_lab.robot.state import Dynamics
 
 
@@ -50,7 +50,7 @@ def desired_angular_rate(
     Returns:
         The rate (3,), N m.
     """
-    tilt = pin.log3(dynamics.pelvis_rotation @ reference.pelvis_rotation.T)
+    tilt = rotation_error(dynamics.pelvis_rotation, reference.pelvis_rotation)
     return damping * (reference.angular_momentum - dynamics.momentum[3:]) - pelvis_stiffness * (
         dynamics.locked_inertia @ tilt
     )
