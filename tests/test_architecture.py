@@ -48,7 +48,7 @@ PLACES = {
     "qpsolvers": ("control.qp",),
     "daqp": ("control.qp",),
     "clarabel": ("control.qp",),
-    "placo": ("robot.posture", "bench.placo_peer"),
+    "placo": ("robot.posture", "bench.peer"),
 }
 
 
@@ -120,7 +120,7 @@ BLAMELESS = {
     "physics.push": "from momentum_lab.errors import InputError",
     "events": "from momentum_lab.physics.push import Push",
     "session": "from momentum_lab.control.qp import solve\nfrom momentum_lab import __version__",
-    "bench.placo_peer": "import placo",
+    "bench.peer": "import placo",
     "app.server": "import viser\nfrom momentum_lab.session import Session",
     "cli": "from momentum_lab.app.server import serve",
 }

@@ -16,13 +16,16 @@ from momentum_lab.robot.urdf import add_fixed_link, bare_urdf
 
 # PlaCo's default cost on torques drags its CoM task away by up to 0.5 m/s^2 on TALOS; without any cost on
 # forces the feet would push against each other as hard as their friction lets them.
-_TORQUE_COST, _FORCE_COST = 1e-9, 1e-6
+_TORQUE_COST, _FORCE_COST = 1e-9, 1e-5
 # What the lab's controller counts on, too: friction, and how far inside the sole's edge the CoP stays, m.
 _FRICTION, _BORDER = 0.6, 0.005
-_COM_WEIGHT, _PELVIS_WEIGHT, _POSTURE_WEIGHT = 1.0, 1.0, 1e-2
-# Proportional gains, 1/s^2; PlaCo damps critically.
-_COM_GAIN, _PELVIS_GAIN, _POSTURE_GAIN, _CONTACT_GAIN = 16.0, 100.0, 50.0, 0.0
-_CONTACT_DAMPING = 50.0
+_COM_WEIGHT, _PELVIS_WEIGHT, _POSTURE_WEIGHT = 1.0, 1e-2, 1e-2
+# Proportional gains, 1/s^2, which PlaCo damps critically; stiffer ones ask for a CoP beyond the toes of G1.
+_COM_GAIN, _PELVIS_GAIN, _POSTURE_GAIN = 12.0, 25.0, 50.0
+# A foot in contact is only braked, 1/s: its place on MuJoCo's soft floor is not known to a tenth of a millimetre.
+_CONTACT_GAIN, _CONTACT_DAMPING = 0.0, 5.0
+# Braking that PlaCo reserves before a joint's limit, rad/s^2; with its 1 the pushed G1 has no solution.
+_BRAKING = 20.0
 _BASE_QUATERNION = slice(3, 7)
 
 
@@ -48,6 +51,8 @@ class PlacoPeer:
         for name, inertia in zip(robot.joint_names, robot.model.armature[6:].tolist(), strict=True):
             self.body.set_rotor_inertia(name, inertia)
         self.solver = placo.DynamicsSolver(self.body)
+        for name in robot.joint_names:
+            self.solver.set_qdd_safe(name, _BRAKING)
         self.solver.dt = timestep
         self.solver.torque_cost = _TORQUE_COST
         self.solver.enable_torque_limits(limits)
@@ -117,35 +122,34 @@ class PeerLoop:
     """One robot in MuJoCo, balanced by PlaCo: state, kinematics, torques, step.
 
     Args:
-        robot: the robot.
+        placo: the controller.
         home: the standing state it starts from.
         timestep: of control and physics, s.
-        limits: whether PlaCo limits torques and joints; MuJoCo always does.
 
     Raises:
         LabError: MuJoCo is not installed.
     """
 
-    def __init__(self, robot: RobotModel, home: State, timestep: float, limits: bool = True) -> None:
+    def __init__(self, placo: PlacoPeer, home: State, timestep: float) -> None:
         mujoco = load_mujoco()
-        self.placo = PlacoPeer(robot, home, timestep, limits)
+        robot = placo.robot
+        self.placo = placo
         self.model = mujoco_model(robot, timestep)
         self.data: Any = mujoco.MjData(self.model)
-        self._mj_step, self._rotate, self._conjugate = (
+        self._trunk = self.model.body(robot.spec.trunk).id
+        self._step, self._rotate, self._conjugate = (
             mujoco.mj_step,
             mujoco.mju_rotVecQuat,
             mujoco.mju_negQuat,
         )
-        trunk = self.model.body(robot.spec.trunk).id
-        self._trunk_force = self.data.xfrc_applied[trunk, :3]
         # Views and buffers, so that a tick makes no arrays.
         self._qpos, self._qvel, self._ctrl = self.data.qpos, self.data.qvel, self.data.ctrl
         self._quaternion, self._velocity = self._qpos[_BASE_QUATERNION], self._qvel[:3]
-        self._q, self._v = self.placo.q, self.placo.v
-        self._base_velocity = self._v[:3]
+        self._base_velocity = placo.v[:3]
         self._to_base = np.zeros(4)
         self._order = np.r_[0:3, 4:7, 3, 7 : robot.nq]
         self._qpos[self._order] = home.q
+        mujoco.mj_forward(self.model, self.data)
 
     def tick(self) -> None:
         """From the present state to the next one."""
@@ -154,22 +158,27 @@ class PeerLoop:
 
     def control(self) -> None:
         """PlaCo's torques for MuJoCo's state, handed to the motors."""
-        self._read_state()
-        body = self.placo.body
-        body.update_kinematics()
+        self.read_state()
+        self.placo.body.update_kinematics()
         self._ctrl[:] = self.placo.solve()[6:]
 
     def move(self) -> None:
         """One step of MuJoCo."""
-        self._mj_step(self.model, self.data)
+        self._step(self.model, self.data)
 
     def push(self, force: np.ndarray) -> None:
-        """Pull at the trunk's centre of mass with a force (3,), N, until told otherwise."""
-        self._trunk_force[:] = force
+        """Pull at the trunk with a force (3,) whose line passes through the present CoM, N, until told otherwise."""
+        self.read_state()
+        self.placo.body.update_kinematics()
+        arm = self.placo.body.com_world() - self.data.xipos[self._trunk]
+        self.data.xfrc_applied[self._trunk] = np.concatenate([force, np.cross(arm, force)])
 
-    def _read_state(self) -> None:
-        """MuJoCo's quaternion is wxyz and its base velocity that of the origin in world axes."""
-        self._qpos.take(self._order, out=self._q, mode="clip")
-        self._v[:] = self._qvel
+    def read_state(self) -> None:
+        """Give MuJoCo's state to PlaCo.
+
+        MuJoCo's quaternion is wxyz and its base velocity that of the origin in world axes.
+        """
+        self._qpos.take(self._order, out=self.placo.q, mode="clip")
+        self.placo.v[:] = self._qvel
         self._conjugate(self._to_base, self._quaternion)
         self._rotate(self._base_velocity, self._velocity, self._to_base)
