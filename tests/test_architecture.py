@@ -49,6 +49,7 @@ PLACES = {
     "daqp": ("control.qp",),
     "clarabel": ("control.qp",),
     "placo": ("robot.posture", "bench.peer"),
+    "mujoco": ("physics.mujoco_model", "bench"),
 }
 
 
@@ -89,6 +90,7 @@ def test_package_obeys_every_rule() -> None:
         ("control.qp_extra", "import daqp", "control.qp_extra must not import daqp"),
         ("momentum.support", "import clarabel", "momentum.support must not import clarabel"),
         ("bench.measure", "import placo", "bench.measure must not import placo"),
+        ("physics.simulator", "import mujoco", "physics.simulator must not import mujoco"),
         ("garage", "import math", "garage has no floor"),
     ],
 )

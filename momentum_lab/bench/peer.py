@@ -25,7 +25,7 @@ _COM_GAIN, _PELVIS_GAIN, _POSTURE_GAIN = 12.0, 25.0, 50.0
 # A foot in contact is only braked, 1/s: its place on MuJoCo's soft floor is not known to a tenth of a millimetre.
 _CONTACT_GAIN, _CONTACT_DAMPING = 0.0, 5.0
 # Braking that PlaCo reserves before a joint's limit, rad/s^2; with its 1 the pushed G1 has no solution.
-_BRAKING = 20.0
+_BRAKING = 50.0
 _BASE_QUATERNION = slice(3, 7)
 
 
