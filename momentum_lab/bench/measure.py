@@ -112,7 +112,7 @@ class _Field:
         stages = [self.staged.tick() for _ in range(_TURN)]
         ticks = [_timed(self.session.tick) for _ in range(_TURN)]
         self.placo.follow(self.session.state)
-        columns = [stages, ticks, [_timed(self.placo.solve) for _ in range(_TURN)]]
+        columns: list[Any] = [stages, ticks, [_timed(self.placo.solve) for _ in range(_TURN)]]
         if self.peer is not None:
             columns.append([(_timed(self.peer.control), _timed(self.peer.move)) for _ in range(_TURN)])
         return np.column_stack(columns)
@@ -128,19 +128,18 @@ class _Field:
 
     def result(self, times: np.ndarray) -> RobotBench:
         """The percentiles of the columns of all turns."""
-        stages = {stage: _percentiles(times[:, i]) for i, stage in enumerate(STAGES)}
+        parts: dict[str, Any] = {stage: _percentiles(times[:, i]) for i, stage in enumerate(STAGES)}
         ticks, solves = times[:, len(STAGES)], times[:, len(STAGES) + 1]
-        peer = _peer_result(ticks, times[:, len(STAGES) + 2 :])
+        parts.update(_peer_result(ticks, times[:, len(STAGES) + 2 :]))
         return RobotBench(
             robot=self.session.robot.spec.name,
             ticks=len(times),
-            **stages,
             tick=_percentiles(ticks),
             real_time_factor=self.session.scenario.timestep / float(ticks.mean()),
             placo_solve=_percentiles(solves),
             calls_per_tick=self.calls,
             missing=self.missing,
-            **peer,
+            **parts,
         )
 
 

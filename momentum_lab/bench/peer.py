@@ -16,7 +16,7 @@ from momentum_lab.robot.urdf import add_fixed_link, bare_urdf
 
 # PlaCo's default cost on torques drags its CoM task away by up to 0.5 m/s^2 on TALOS; without any cost on
 # forces the feet would push against each other as hard as their friction lets them.
-_TORQUE_COST, _FORCE_COST = 1e-9, 1e-5
+_TORQUE_COST, _FORCE_COST = 1e-9, 2e-7
 # What the lab's controller counts on, too: friction, and how far inside the sole's edge the CoP stays, m.
 _FRICTION, _BORDER = 0.6, 0.005
 _COM_WEIGHT, _PELVIS_WEIGHT, _POSTURE_WEIGHT = 1.0, 1e-2, 1e-2

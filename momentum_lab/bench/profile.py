@@ -60,9 +60,9 @@ def calls_per_tick(session: Session) -> float:
         session.tick()
     count = 0
 
-    def watch(_frame: FrameType, event: str, _what: Any) -> None:
+    def watch(_frame: FrameType, event: str, what: Any) -> None:
         nonlocal count
-        count += event in ("call", "c_call")
+        count += event in ("call", "c_call") and what is not sys.setprofile
 
     _watched(session, _COUNTED, watch)
     return count / _COUNTED
@@ -85,6 +85,8 @@ def profile(session: Session, least: float = 1.0) -> list[ProfileRow]:
     starts = [0.0]
 
     def watch(frame: FrameType, event: str, what: Any) -> None:
+        if what is sys.setprofile:
+            return
         if event in ("call", "c_call"):
             name = _name(frame) if event == "call" else _builtin_name(what)
             path.append(path[-1].callees.setdefault(name, Call(name)))
