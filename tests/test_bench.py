@@ -59,10 +59,12 @@ def test_placo_stands_on_both_feet(robot: RobotModel) -> None:
     assert wrenches[:, 2].sum() == pytest.approx(robot.mass * 9.81, rel=1e-3)
     dynamics = robot.at(home)
     balance = dynamics.nonlinear_effects[6:] - torque
-    for jacobian, rotation, wrench in zip(
-        dynamics.sole_jacobian, dynamics.sole_rotation, wrenches, strict=True
+    for sole, jacobian, rotation, wrench in zip(
+        robot.soles, dynamics.sole_jacobian, dynamics.sole_rotation, wrenches, strict=True
     ):
-        balance -= jacobian[:, 6:].T @ np.concatenate([rotation @ wrench[:3], rotation @ wrench[3:]])
+        force, middle = wrench[:3], np.append((sole.lower + sole.upper) / 2.0, 0.0)
+        moment = wrench[3:] + np.cross(middle, force)
+        balance -= jacobian[:, 6:].T @ np.concatenate([rotation @ force, rotation @ moment])
     assert_close(balance, 0.0, 1e-2 * np.abs(torque).max())
 
 

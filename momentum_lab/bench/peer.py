@@ -21,7 +21,7 @@ _TORQUE_COST, _FORCE_COST = 1e-9, 2e-7
 _FRICTION, _BORDER = 0.6, 0.005
 _COM_WEIGHT, _PELVIS_WEIGHT, _POSTURE_WEIGHT = 1.0, 1e-2, 1e-2
 # Proportional gains, 1/s^2, which PlaCo damps critically; stiffer ones ask for a CoP beyond the toes of G1.
-_COM_GAIN, _PELVIS_GAIN, _POSTURE_GAIN = 12.0, 25.0, 50.0
+_COM_GAIN, _PELVIS_GAIN, _POSTURE_GAIN = 12.0, 25.0, 100.0
 # A foot in contact is only braked, 1/s: its place on MuJoCo's soft floor is not known to a tenth of a millimetre.
 _CONTACT_GAIN, _CONTACT_DAMPING = 0.0, 5.0
 # Braking that PlaCo reserves before a joint's limit, rad/s^2; with its 1 the pushed G1 has no solution.
@@ -136,7 +136,7 @@ class PeerLoop:
         self.placo = placo
         self.model = mujoco_model(robot, timestep)
         self.data: Any = mujoco.MjData(self.model)
-        self._trunk = self.model.body(robot.spec.trunk).id
+        self._trunk_force = self.data.xfrc_applied[self.model.body(robot.spec.trunk).id, :3]
         self._step, self._rotate, self._conjugate = (
             mujoco.mj_step,
             mujoco.mju_rotVecQuat,
@@ -149,7 +149,6 @@ class PeerLoop:
         self._to_base = np.zeros(4)
         self._order = np.r_[0:3, 4:7, 3, 7 : robot.nq]
         self._qpos[self._order] = home.q
-        mujoco.mj_forward(self.model, self.data)
 
     def tick(self) -> None:
         """From the present state to the next one."""
@@ -167,11 +166,8 @@ class PeerLoop:
         self._step(self.model, self.data)
 
     def push(self, force: np.ndarray) -> None:
-        """Pull at the trunk with a force (3,) whose line passes through the present CoM, N, until told otherwise."""
-        self.read_state()
-        self.placo.body.update_kinematics()
-        arm = self.placo.body.com_world() - self.data.xipos[self._trunk]
-        self.data.xfrc_applied[self._trunk] = np.concatenate([force, np.cross(arm, force)])
+        """Pull at the trunk's centre of mass with a force (3,), N, until told otherwise."""
+        self._trunk_force[:] = force
 
     def read_state(self) -> None:
         """Give MuJoCo's state to PlaCo.
