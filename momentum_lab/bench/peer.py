@@ -35,17 +35,16 @@ class PlacoPeer:
     `DynamicsSolver` with hard planar contacts of both soles (friction cones, CoP within the rectangle, normal
     force above zero), a CoM task, a pelvis orientation task and a soft posture of all joints, all with
     proportional and derivative gains; with torque limits and joint limits, which the lab's controllers respect
-    too, unless told otherwise. PlaCo centres a contact on its frame, so each sole gets a frame at the middle of
+    too. PlaCo centres a contact on its frame, so each sole gets a frame at the middle of
     its rectangle. Rotor inertias are the lab's.
 
     Args:
         robot: the robot.
         home: the standing state, which is what it shall keep.
         timestep: s.
-        limits: whether torques and joints are limited in the quadratic program.
     """
 
-    def __init__(self, robot: RobotModel, home: State, timestep: float, limits: bool = True) -> None:
+    def __init__(self, robot: RobotModel, home: State, timestep: float) -> None:
         self.robot = robot
         self.body = placo.RobotWrapper(str(robot.urdf), placo.Flags.ignore_collisions, _urdf(robot))
         for name, inertia in zip(robot.joint_names, robot.model.armature[6:].tolist(), strict=True):
@@ -55,8 +54,8 @@ class PlacoPeer:
             self.solver.set_qdd_safe(name, _BRAKING)
         self.solver.dt = timestep
         self.solver.torque_cost = _TORQUE_COST
-        self.solver.enable_torque_limits(limits)
-        self.solver.enable_joint_limits(limits)
+        self.solver.enable_torque_limits(True)
+        self.solver.enable_joint_limits(True)
         # Views of PlaCo's own memory: writing to them sets its state.
         self.q, self.v = self.body.state.q, self.body.state.qd
         self.follow(home)

@@ -93,11 +93,10 @@ def _set_options(mujoco: ModuleType, spec: Any, timestep: float) -> None:
 
 
 def _set_joints(mujoco: ModuleType, spec: Any, robot: RobotModel) -> None:
-    """Rotor inertias and motors; MuJoCo takes the effort limits from the URDF."""
+    """Rotor inertias and motors, which actuators are by default; MuJoCo takes the effort limits from the URDF."""
     for name, armature in zip(robot.joint_names, robot.model.armature[6:], strict=True):
         spec.joint(name).armature = armature
-        motor = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
-        motor.set_to_motor()
+        spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
 
 
 def _add_floor(mujoco: ModuleType, spec: Any, robot: RobotModel) -> None:
