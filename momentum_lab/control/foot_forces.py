@@ -14,11 +14,19 @@ from functools import lru_cache
 
 import numpy as np
 
-from momentum_lab.control.foot_programs import cop_program, foot_wrenches, force_program, levers_of
+from momentum_lab.control.foot_programs import (
+    cop_program,
+    foot_wrenches,
+    force_program,
+    levers_of,
+    lowest_corners,
+    placed_feet,
+)
 from momentum_lab.control.qp import QuadraticProgram, solve
 from momentum_lab.momentum.ground import GRAVITY
-from momentum_lab.momentum.support import inset_rectangle, support_polygon
-from momentum_lab.robot.model import RobotModel, Sole
+from momentum_lab.momentum.polygon import convex_hull
+from momentum_lab.momentum.support import inset_rectangle
+from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
 # A sole this far above the ground, m, is no longer counted on; contact itself lifts less.
@@ -34,17 +42,23 @@ _NORMAL_MOMENT_WEIGHT = 0.003
 
 @dataclass(frozen=True, slots=True)
 class SafeSoles:
-    """The parts of all soles that keep a border from the edge.
+    """The S stance soles without a border, and the ankles above them; the same in every tick.
 
     Attributes:
-        lower: rear right corners from the ankles, sole axes (F, 2), m.
-        upper: front left corners likewise (F, 2), m.
-        corners: corners in the sole frames, counter-clockwise (F, 4, 2), m.
+        names: how the feet are called.
+        indices: which feet they are (S,).
+        lower: rear right corners from the ankles, sole axes (S, 2), m.
+        upper: front left corners likewise (S, 2), m.
+        corners: corners in the sole frames, counter-clockwise (S, 4, 2), m.
+        ankles: the ankles in the sole frames (S, 3), m.
     """
 
+    names: tuple[str, ...]
+    indices: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
     corners: np.ndarray
+    ankles: np.ndarray
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,34 +67,26 @@ class StanceFeet:
 
     Attributes:
         index: which feet.
-        names: how they are called.
-        com_to_ankle: from the CoM to the ankles, world axes (S, 3), m.
+        safe: their soles without a border, and their ankles.
         com_to_sole: from the CoM to the sole origins, world axes (S, 3), m.
+        com_to_ankle: from the CoM to the ankles, world axes (S, 3), m.
         rotation: axes of the soles in the world (S, 3, 3).
-        lower: rear right corners of the safe rectangles, from the ankles, sole axes (S, 2), m.
-        upper: front left corners likewise (S, 2), m.
-        ankle_in_sole: the ankles in the sole frames (S, 3), m.
-        ankle_height: their heights above the soles (S,), m.
-        safe_corners: corners of the safe rectangles in the world, seen from above (S, 4, 2), m.
+        safe_corners: corners of the safe rectangles in the world, seen from above (4 S, 2), m.
         height: mean height of the sole origins in the world, m.
     """
 
     index: tuple[int, ...]
-    names: tuple[str, ...]
-    com_to_ankle: np.ndarray
+    safe: SafeSoles
     com_to_sole: np.ndarray
+    com_to_ankle: np.ndarray
     rotation: np.ndarray
-    lower: np.ndarray
-    upper: np.ndarray
-    ankle_in_sole: np.ndarray
-    ankle_height: np.ndarray
     safe_corners: np.ndarray
     height: float
 
     @property
     def safe_polygon(self) -> np.ndarray:
         """Support polygon of the safe rectangles, counter-clockwise (K, 2), m."""
-        return support_polygon(self.safe_corners.reshape(-1, 2))
+        return convex_hull(self.safe_corners)
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,28 +130,22 @@ class Footing:
         self.ankles = np.array(
             [robot.model.frames[sole.frame].placement.inverse().translation for sole in robot.soles]
         )
-        self._ankle_heights = self.ankles[:, 2].copy()
-        self._safe_soles = lru_cache(maxsize=8)(self._inset)
+        self._lower = np.array([sole.lower for sole in robot.soles])
+        self._upper = np.array([sole.upper for sole in robot.soles])
+        self._safe_soles = lru_cache(maxsize=16)(self._inset)
 
     def stance_feet(self, dynamics: Dynamics, stance: tuple[int, ...], border: float) -> StanceFeet:
         """The stance feet with what is left of their soles without a border (m)."""
-        feet = _all_or_some(stance, len(self.soles))
-        safe, ankle = self._safe_soles(border), self.ankles[feet]
-        position, rotation = dynamics.sole_position[feet], dynamics.sole_rotation[feet]
-        to_sole = position - dynamics.com_in_world
-        return StanceFeet(
-            index=stance,
-            names=tuple([self.soles[foot].name for foot in stance]),
-            com_to_ankle=to_sole + (rotation @ ankle[:, :, None])[:, :, 0],
-            com_to_sole=to_sole,
-            rotation=rotation,
-            lower=safe.lower[feet],
-            upper=safe.upper[feet],
-            ankle_in_sole=ankle,
-            ankle_height=self._ankle_heights[feet],
-            safe_corners=safe.corners[feet] @ rotation[:, :2, :2].transpose(0, 2, 1) + position[:, None, :2],
-            height=sum(position[:, 2].tolist()) / len(stance),
+        safe = self._safe_soles(stance, border)
+        placed = placed_feet(
+            safe.indices,
+            dynamics.sole_position,
+            dynamics.sole_rotation,
+            dynamics.com_in_world,
+            safe.ankles,
+            safe.corners,
         )
+        return StanceFeet(stance, safe, *placed)
 
     def on_the_ground(
         self, dynamics: Dynamics, stance: tuple[int, ...], sole_height: np.ndarray
@@ -157,11 +157,9 @@ class Footing:
             stance: the feet that are meant to carry, as indices.
             sole_height: height of the ground under each sole (F,), m.
         """
-        return tuple(
-            foot
-            for foot in stance
-            if _lowest_corner(self.soles[foot], dynamics, foot) - sole_height[foot] < _IN_THE_AIR
-        )
+        height = lowest_corners(dynamics.sole_position, dynamics.sole_rotation, self._lower, self._upper)
+        near = (height - sole_height < _IN_THE_AIR).tolist()
+        return tuple([foot for foot in stance if near[foot]])
 
     def share(
         self, feet: StanceFeet, force: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds
@@ -189,7 +187,7 @@ class Footing:
     def _recombine(self, feet: StanceFeet, forces: np.ndarray, sole_moments: np.ndarray) -> FootForces:
         """Wrenches about the sole origins and the momentum rate they cause (Eqs. 1, 2)."""
         carried, rate = foot_wrenches(
-            forces, sole_moments, feet.rotation, feet.ankle_in_sole, feet.com_to_sole, self.mass * GRAVITY
+            forces, sole_moments, feet.rotation, feet.safe.ankles, feet.com_to_sole, self.mass * GRAVITY
         )
         if len(feet.index) == len(self.soles):
             return FootForces(carried, rate)
@@ -197,26 +195,20 @@ class Footing:
         wrench[list(feet.index)] = carried
         return FootForces(wrench, rate)
 
-    def _inset(self, border: float) -> SafeSoles:
-        rectangles = [inset_rectangle(sole.lower, sole.upper, border) for sole in self.soles]
+    def _inset(self, stance: tuple[int, ...], border: float) -> SafeSoles:
+        soles, ankles = [self.soles[foot] for foot in stance], self.ankles[list(stance)]
+        rectangles = [inset_rectangle(sole.lower, sole.upper, border) for sole in soles]
         lower, upper = (np.array(corner) for corner in zip(*rectangles, strict=True))
         (rear, right), (front, left) = lower.T, upper.T
         corners = np.stack([(rear, right), (front, right), (front, left), (rear, left)]).transpose(2, 0, 1)
-        ankles = self.ankles[:, :2]
-        return SafeSoles(lower - ankles, upper - ankles, corners)
-
-
-def _all_or_some(feet: tuple[int, ...], count: int) -> slice | list[int]:
-    """What picks some feet out of a per-foot array of all; all of them without a copy."""
-    return slice(None) if len(feet) == count else list(feet)
-
-
-def _lowest_corner(sole: Sole, dynamics: Dynamics, foot: int) -> float:
-    """Height of the lowest corner of a sole in the world, m."""
-    along, across, _ = dynamics.sole_rotation[foot, 2].tolist()
-    (rear, right), (front, left) = sole.lower.tolist(), sole.upper.tolist()
-    lowest = min(along * rear, along * front) + min(across * right, across * left)
-    return float(dynamics.sole_position[foot, 2]) + lowest
+        return SafeSoles(
+            names=tuple(sole.name for sole in soles),
+            indices=np.array(stance),
+            lower=lower - ankles[:, :2],
+            upper=upper - ankles[:, :2],
+            corners=corners.copy(),
+            ankles=ankles,
+        )
 
 
 def _single_cop(
@@ -228,9 +220,10 @@ def _single_cop(
     """
     fx, fy, fn = (force @ feet.rotation[0]).tolist()
     mx, my, mz = (ankle_moment @ feet.rotation[0]).tolist()
-    height = feet.ankle_in_sole[0, 2]
-    x = min(max((-my - height * fx) / fn, feet.lower[0, 0]), feet.upper[0, 0])
-    y = min(max((mx - height * fy) / fn, feet.lower[0, 1]), feet.upper[0, 1])
+    (lower_x, lower_y), (upper_x, upper_y) = feet.safe.lower[0].tolist(), feet.safe.upper[0].tolist()
+    height = feet.safe.ankles[0, 2]
+    x = min(max((-my - height * fx) / fn, lower_x), upper_x)
+    y = min(max((mx - height * fy) / fn, lower_y), upper_y)
     limit = bounds.normal_moment * fn
     return np.array([[x, y, min(max(mz - (x * fy - y * fx), -limit), limit)]])
 
@@ -253,7 +246,7 @@ def _forces(
         _SMALL_FORCE_WEIGHT,
     )
     lower, upper = _pressing(len(feet.index), bounds.least_force)
-    problem = QuadraticProgram(hessian, gradient, rows, lower, upper, _labels(feet.names))
+    problem = QuadraticProgram(hessian, gradient, rows, lower, upper, _labels(feet.safe.names))
     return solve(problem).x.reshape(-1, 3)
 
 
@@ -294,9 +287,9 @@ def _cops(
         forces,
         feet.rotation,
         ankle_moment,
-        feet.ankle_height,
-        feet.lower,
-        feet.upper,
+        feet.safe.ankles,
+        feet.safe.lower,
+        feet.safe.upper,
         bounds.normal_moment,
         _COP_SHIFT_WEIGHT,
         _NORMAL_MOMENT_WEIGHT,

@@ -12,6 +12,68 @@ from momentum_lab.compiled import compiled
 _MATRIX, _VECTOR, _STACK = "f8[:, ::1]", "f8[::1]", "f8[:, :, ::1]"
 
 
+@compiled(
+    f"Tuple(({_MATRIX}, {_MATRIX}, {_STACK}, {_MATRIX}, f8))"
+    f"(i8[::1], {_MATRIX}, {_STACK}, {_VECTOR}, {_MATRIX}, {_STACK})"
+)
+def placed_feet(
+    stance: np.ndarray,
+    position: np.ndarray,
+    rotation: np.ndarray,
+    com: np.ndarray,
+    ankles: np.ndarray,
+    corners: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float]:
+    """Where the stance feet are, seen from the CoM.
+
+    Args:
+        stance: indices of the stance feet (S,).
+        position: all sole origins in the world (F, 3), m.
+        rotation: axes of all soles in the world (F, 3, 3).
+        com: r_G (3,), m.
+        ankles: the stance feet's ankles in the sole frames (S, 3), m.
+        corners: corners of their safe rectangles in the sole frames (S, 4, 2), m.
+
+    Returns:
+        From the CoM to the soles and to the ankles (S, 3), axes (S, 3, 3), safe corners in the world from above
+        (4 S, 2), mean height of the soles, m.
+    """
+    count = len(stance)
+    to_sole, to_ankle, axes = np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 3, 3))
+    placed, height = np.empty((4 * count, 2)), 0.0
+    for place, foot in enumerate(stance):
+        turn = rotation[foot]
+        axes[place] = turn
+        to_sole[place] = position[foot] - com
+        to_ankle[place] = to_sole[place] + turn @ ankles[place]
+        height += position[foot, 2] / count
+        for corner in range(4):
+            x, y = corners[place, corner]
+            for i in range(2):
+                placed[4 * place + corner, i] = position[foot, i] + turn[i, 0] * x + turn[i, 1] * y
+    return to_sole, to_ankle, axes, placed, height
+
+
+@compiled(f"{_VECTOR}({_MATRIX}, {_STACK}, {_MATRIX}, {_MATRIX})")
+def lowest_corners(
+    position: np.ndarray, rotation: np.ndarray, lower: np.ndarray, upper: np.ndarray
+) -> np.ndarray:
+    """Height of the lowest corner of each sole in the world (F,), m.
+
+    Args:
+        position: sole origins in the world (F, 3), m.
+        rotation: axes of the soles in the world (F, 3, 3).
+        lower: rear right corners in the sole frames (F, 2), m.
+        upper: front left corners likewise (F, 2), m.
+    """
+    height = position[:, 2].copy()
+    for foot in range(len(height)):
+        for k in range(2):
+            slope = rotation[foot, 2, k]
+            height[foot] += min(slope * lower[foot, k], slope * upper[foot, k])
+    return height
+
+
 @compiled(f"{_MATRIX}({_MATRIX})")
 def levers_of(arms: np.ndarray) -> np.ndarray:
     """The map [S(a_1) ... S(a_S)] (3, 3 S) from forces at arms (S, 3) to their moment."""
@@ -70,13 +132,13 @@ def force_program(
 
 @compiled(
     f"Tuple(({_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}))"
-    f"({_MATRIX}, {_STACK}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_MATRIX}, f8, f8, f8)"
+    f"({_MATRIX}, {_STACK}, {_VECTOR}, {_MATRIX}, {_MATRIX}, {_MATRIX}, f8, f8, f8)"
 )
 def cop_program(
     forces: np.ndarray,
     rotation: np.ndarray,
     ankle_moment: np.ndarray,
-    height: np.ndarray,
+    ankle_in_sole: np.ndarray,
     lower: np.ndarray,
     upper: np.ndarray,
     normal_moment: float,
@@ -93,7 +155,7 @@ def cop_program(
         forces: f_i (S, 3), N.
         rotation: axes R of the soles in the world (S, 3, 3).
         ankle_moment: angular rate without what forces through the ankles give of it (3,), N m.
-        height: h_i of the ankles above the soles (S,), m.
+        ankle_in_sole: ankles in the sole frames, h_i their heights (S, 3), m.
         lower: least shifts (S, 2), m.
         upper: largest shifts (S, 2), m.
         normal_moment: largest normal moment per normal force, m.
@@ -109,7 +171,7 @@ def cop_program(
     low, high = np.empty(size), np.empty(size)
     for foot in range(count):
         fx, fy, fz = forces[foot]
-        turn, at = rotation[foot], 3 * foot
+        turn, height, at = rotation[foot], ankle_in_sole[foot, 2], 3 * foot
         for k in range(3):
             x, y, z = turn[0, k], turn[1, k], turn[2, k]
             column = (fz * y - fy * z, fx * z - fz * x, fy * x - fx * y)
@@ -117,12 +179,12 @@ def cop_program(
                 if k < 2:
                     levers[i, at + k] = column[i]
                 else:
-                    remaining[i] += height[foot] * column[i]
+                    remaining[i] += height * column[i]
                     levers[i, at + 2] = turn[i, 2]
         normal = fx * turn[0, 2] + fy * turn[1, 2] + fz * turn[2, 2]
         for k in range(2):
             along = fx * turn[0, k] + fy * turn[1, k] + fz * turn[2, k]
-            easy[at + k] = -height[foot] * along / normal
+            easy[at + k] = -height * along / normal
             low[at + k], high[at + k] = lower[foot, k], upper[foot, k]
         high[at + 2] = normal_moment * normal
         low[at + 2] = -high[at + 2]

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from momentum_lab.compiled import compiled
 from momentum_lab.errors import InputError
 from momentum_lab.momentum.polygon import closest_in_polygon, convex_hull, depth
 
@@ -169,6 +170,7 @@ def in_friction_cone(force: np.ndarray, friction: float) -> bool:
     return friction_margin(force, friction) >= 0.0
 
 
+@compiled("f8[::1](f8[:], f8)")
 def project_on_friction_cone(force: np.ndarray, friction: float) -> np.ndarray:
     """The force in the friction cone that is closest to a force (chapter, section 5.1.2).
 
@@ -182,7 +184,7 @@ def project_on_friction_cone(force: np.ndarray, friction: float) -> np.ndarray:
     Returns:
         The projected force (3,), N; its normal part is larger than before when it slipped.
     """
-    fx, fy, fn = force.tolist()
+    fx, fy, fn = force
     tangential = math.hypot(fx, fy)
     if tangential <= friction * fn:
         return np.array((fx, fy, fn))
@@ -193,6 +195,7 @@ def project_on_friction_cone(force: np.ndarray, friction: float) -> np.ndarray:
     return np.array((scale * fx, scale * fy, normal))
 
 
+@compiled("f8[::1](f8[:], f8)")
 def clamp_tangential_force(force: np.ndarray, friction: float) -> np.ndarray:
     """The force in the friction cone with the same normal part, so that the vertical momentum is kept.
 
@@ -205,7 +208,7 @@ def clamp_tangential_force(force: np.ndarray, friction: float) -> np.ndarray:
     Returns:
         The clamped force (3,), N.
     """
-    fx, fy, fn = force.tolist()
+    fx, fy, fn = force
     if fn <= 0.0:
         return np.zeros(3)
     tangential, limit = math.hypot(fx, fy), friction * fn

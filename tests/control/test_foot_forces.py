@@ -146,7 +146,7 @@ def test_what_the_ankles_need_not_do_they_do_not_do(robot):
         # Less than half a millimetre of CoP under the whole weight.
         moments = ankle_moments(robot, dynamics, answer.wrench)
         assert np.abs(moments).max() < 5e-4 * robot.mass * G
-        for rotation, ankle, wrench in zip(feet.rotation, feet.ankle_in_sole, answer.wrench, strict=True):
+        for rotation, ankle, wrench in zip(feet.rotation, feet.safe.ankles, answer.wrench, strict=True):
             f, n = wrench[:3] @ rotation, wrench[3:] @ rotation
             torque_free = ankle[:2] - ankle[2] * f[:2] / f[2]
             assert_close([-n[1] / f[2], n[0] / f[2]], torque_free, 1e-3)
