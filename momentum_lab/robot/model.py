@@ -9,6 +9,7 @@ from fnmatch import fnmatchcase
 import numpy as np
 import pinocchio as pin
 
+from momentum_lab.compiled import compiled
 from momentum_lab.errors import RobotError
 from momentum_lab.robot.catalog import FootSpec, RobotSpec, load_spec
 from momentum_lab.robot.state import Dynamics, State
@@ -139,16 +140,19 @@ class RobotModel:
         nonlinear_effects = pin.nonLinearEffects(model, data, q, v).copy()
         pin.forwardKinematics(model, data, q, v, self._no_acceleration)
         pin.updateFramePlacements(model, data)
-        base, frames, momentum = data.oMi[1], self._sole_frames, centroidal_map @ v
+        base, frames = data.oMi[1], self._sole_frames
         soles = [data.oMf[frame] for frame in frames]
+        momentum, bias, locked_inertia = centroidal_terms(
+            centroidal_map, nonlinear_effects, v, base.rotation, base.translation, com, self._weight
+        )
         return Dynamics(
             state=state,
             com_in_world=com,
             com_velocity=momentum[:3] / self.mass,
             centroidal_map=centroidal_map,
-            centroidal_bias=self._centroidal_bias(nonlinear_effects, base, com),
+            centroidal_bias=bias,
             momentum=momentum,
-            locked_inertia=centroidal_map[3:, 3:_BASE_DOF] @ base.rotation.T,
+            locked_inertia=locked_inertia,
             mass_matrix=mass_matrix,
             nonlinear_effects=nonlinear_effects,
             sole_position=np.array([sole.translation for sole in soles]),
@@ -159,13 +163,6 @@ class RobotModel:
             pelvis_jacobian=pin.getFrameJacobian(model, data, self.pelvis, _WORLD_ALIGNED),
             pelvis_bias=self._bias(self.pelvis),
         )
-
-    def _centroidal_bias(self, nonlinear_effects: np.ndarray, base: pin.SE3, com: np.ndarray) -> np.ndarray:
-        """dA_G/dt v about the CoM (6,): the base rows of C v + tau_g (nv,) in world axes, without gravity."""
-        base_in_com = pin.SE3(base.rotation, base.translation - com)
-        bias = base_in_com.act(pin.Force(nonlinear_effects[:_BASE_DOF])).vector
-        bias[:3] += self._weight
-        return bias
 
     def _bias(self, frame: int) -> np.ndarray:
         """Classical acceleration of a frame at zero joint acceleration (6,)."""
@@ -184,6 +181,51 @@ class RobotModel:
             corners=corners,
             joints=self.matching_joints(foot.joints),
         )
+
+
+@compiled(
+    "Tuple((f8[::1], f8[::1], f8[:, ::1]))(f8[:, ::1], f8[::1], f8[::1], f8[:, :], f8[:], f8[::1], f8[::1])"
+)
+def centroidal_terms(
+    centroidal_map: np.ndarray,
+    nonlinear_effects: np.ndarray,
+    velocity: np.ndarray,
+    rotation: np.ndarray,
+    position: np.ndarray,
+    com: np.ndarray,
+    weight: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What A_G and the base rows of the equations of motion say about the momentum (Eqs. 15, 20, 29).
+
+    h_G = A_G v. The base rows of C v + tau_g, turned into world axes and taken about the CoM, are dA_G/dt v
+    and the weight held up. The base turned alone, with no joint moving, shows the inertia about the CoM.
+
+    Args:
+        centroidal_map: A_G (6, nv).
+        nonlinear_effects: C v + tau_g (nv,).
+        velocity: v (nv,).
+        rotation: axes of the base in the world (3, 3).
+        position: its origin (3,), m.
+        com: r_G (3,), m.
+        weight: m g (3,), N.
+
+    Returns:
+        h_G (6,), dA_G/dt v (6,), I_G (3, 3).
+    """
+    bias, inertia = np.zeros(6), np.zeros((3, 3))
+    for i in range(3):
+        for k in range(3):
+            bias[i] += rotation[i, k] * nonlinear_effects[k]
+            bias[3 + i] += rotation[i, k] * nonlinear_effects[3 + k]
+            for j in range(3):
+                inertia[i, j] += centroidal_map[3 + i, 3 + k] * rotation[j, k]
+    fx, fy, fz = bias[:3]
+    x, y, z = position - com
+    bias[3] += y * fz - z * fy
+    bias[4] += z * fx - x * fz
+    bias[5] += x * fy - y * fx
+    bias[:3] += weight
+    return centroidal_map @ velocity, bias, inertia
 
 
 def _add_frame(model: pin.Model, name: str, foot: FootSpec, parent: int) -> None:
