@@ -143,15 +143,14 @@ def _together(touching: list[Touch], nv: int) -> Contacts:
     if not touching:
         return Contacts(np.zeros((0, nv)), np.zeros((0, 0)), np.zeros(0), ())
     gap = np.concatenate([touch.gap for touch in touching])
-    spread = np.zeros((3 * gap.size, 6 * len(touching)))
-    row = 0
-    for column, touch in enumerate(touching):
-        rows = len(touch.spread)
-        spread[row : row + rows, 6 * column : 6 * column + 6] = touch.spread
-        row += rows
+    spread, friction = np.zeros((3 * gap.size, 6 * len(touching))), ()
+    for body, touch in enumerate(touching):
+        row = 3 * len(friction)
+        friction += (touch.patch.friction,) * touch.gap.size
+        spread[row : 3 * len(friction), 6 * body : 6 * body + 6] = touch.spread
     return Contacts(
         frame_jacobian=np.concatenate([touch.frame_jacobian for touch in touching]),
         spread=spread,
         gap=gap,
-        friction=tuple([touch.patch.friction for touch in touching for _ in range(touch.gap.size)]),
+        friction=friction,
     )
