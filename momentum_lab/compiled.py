@@ -30,7 +30,9 @@ def compiled(signature: str) -> Callable[[FunctionT], FunctionT]:
 
 def _cache_folder() -> Path:
     """A folder that changes with any file of this package: numba does not see a change in what a function calls."""
-    stamps = [(file.name, file.stat().st_mtime_ns, file.stat().st_size) for file in sorted(_HERE.rglob("*.py"))]
+    stamps = [
+        (file.name, file.stat().st_mtime_ns, file.stat().st_size) for file in sorted(_HERE.rglob("*.py"))
+    ]
     version = hashlib.sha256(repr((str(_HERE), numba.__version__, stamps)).encode()).hexdigest()[:16]
     home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return Path(home) / "momentum-lab" / version

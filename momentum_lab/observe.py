@@ -170,7 +170,5 @@ def derived(
         np.array(cop_coordinates(contact, np.zeros(3), ground_height)),
         np.array(cmp_coordinates(contact[:3], com, ground_height)),
         sole_cops(foot_wrench, sole_rotation),
-        equation_residual(
-            centroidal_map, centroidal_bias, velocity, next_velocity, momentum_rate, timestep
-        ),
+        equation_residual(centroidal_map, centroidal_bias, velocity, next_velocity, momentum_rate, timestep),
     )

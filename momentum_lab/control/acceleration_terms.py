@@ -125,7 +125,9 @@ def momentum_and_pelvis(
     return rows, targets
 
 
-@compiled(f"Tuple(({_MATRIX}, {_VECTOR}))(i8[::1], f8[:, :, ::1], {_MATRIX}, {_MATRIX}, f8[:, :, ::1], {_VECTOR}, {_VECTOR}, f8)")
+@compiled(
+    f"Tuple(({_MATRIX}, {_VECTOR}))(i8[::1], f8[:, :, ::1], {_MATRIX}, {_MATRIX}, f8[:, :, ::1], {_VECTOR}, {_VECTOR}, f8)"
+)
 def standing_feet(
     stance: np.ndarray,
     sole_jacobian: np.ndarray,
@@ -166,9 +168,7 @@ def standing_feet(
     return rows, values
 
 
-@compiled(
-    f"UniTuple({_VECTOR}, 2)({_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, f8, f8)"
-)
+@compiled(f"UniTuple({_VECTOR}, 2)({_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, f8, f8)")
 def braking_bounds(
     angle: np.ndarray, speed: np.ndarray, lower: np.ndarray, upper: np.ndarray, rate: float, margin: float
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -225,9 +225,7 @@ def _single_cop(
     return np.array([[x, y, min(max(mz - (x * fy - y * fx), -limit), limit)]])
 
 
-def _forces(
-    feet: StanceFeet, force: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds
-) -> np.ndarray:
+def _forces(feet: StanceFeet, force: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds) -> np.ndarray:
     """Stage 1: forces at the ankles (S, 3), N.
 
     min |f - sum f_i|^2 + w^2 |dk/dt - sum (a_i - r_G) x f_i|^2 + e^2 sum |f_i|^2, each f_i in a pyramid inside
@@ -271,9 +269,7 @@ def _labels(names: tuple[str, ...]) -> tuple[tuple[int, str], ...]:
     return ((3 * len(names), "unbounded"), *(label for labels in per_foot for label in labels))
 
 
-def _cops(
-    feet: StanceFeet, forces: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds
-) -> np.ndarray:
+def _cops(feet: StanceFeet, forces: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds) -> np.ndarray:
     """Stage 2: CoP offsets from the ankles and normal moments (S, 3), m and N m.
 
     min |Psi eta - kappa|^2 + |e (eta - eta_d)|^2 within the safe soles, eta = (d_x, d_y, tau_n) per foot and

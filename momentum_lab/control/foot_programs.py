@@ -230,7 +230,10 @@ def foot_wrenches(
     for foot in range(len(forces)):
         turn = rotation[foot]
         fx, fy, fz = forces[foot]
-        px, py = ankle_in_sole[foot, 0] + sole_moments[foot, 0], ankle_in_sole[foot, 1] + sole_moments[foot, 1]
+        px, py = (
+            ankle_in_sole[foot, 0] + sole_moments[foot, 0],
+            ankle_in_sole[foot, 1] + sole_moments[foot, 1],
+        )
         arm = (
             turn[0, 0] * px + turn[0, 1] * py,
             turn[1, 0] * px + turn[1, 1] * py,

@@ -177,7 +177,9 @@ def cop_from_momentum_rate(
     Returns:
         (p_x, p_y) in the world (2,), m; NaN without a normal force.
     """
-    return np.array(cop_coordinates(ground_wrench_from_momentum_rate(momentum_rate, mass), com_in_world, ground_height))
+    return np.array(
+        cop_coordinates(ground_wrench_from_momentum_rate(momentum_rate, mass), com_in_world, ground_height)
+    )
 
 
 def cmp_from_force(force: np.ndarray, com_in_world: np.ndarray, ground_height: float = 0.0) -> np.ndarray:

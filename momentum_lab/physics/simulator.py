@@ -106,9 +106,7 @@ class Simulator:
             return np.zeros(self.robot.na)
         return stops.felt_torque((state.v - dynamics.state.v) / self.timestep)
 
-    def _contact_wrenches(
-        self, touching: list[Touch], wrenches: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def _contact_wrenches(self, touching: list[Touch], wrenches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Ground on each foot about its sole (F, 6), and on all else about the world origin (6,).
 
         `wrenches` (B, 6) are those on the touching bodies in their order, about the origins of their frames.
