@@ -112,10 +112,10 @@ class Worker:
     def _advance(self, due: int) -> None:
         playback = self._playback
         for _ in range(due):
+            self._pacer.begin(time.perf_counter())
             playback.tick(1)
             if playback.session.ticks % HISTORY_EVERY == 0:
                 self._remember()
-        self._pacer.done(due)
         self._news = self._news or due > 0
 
     def _remember(self) -> None:
@@ -128,6 +128,7 @@ class Worker:
             return
         frame = Frame(
             truth=self._playback.truth(self._pacer.real_time_factor(now)),
+            late_ticks=self._pacer.late_ticks,
             row=self._playback.latest.row.tobytes(),
             history=b"".join(row.tobytes() for row in self._history),
             notices=tuple(self._notices),
