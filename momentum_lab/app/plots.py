@@ -57,7 +57,9 @@ class Plots:
             soft=_SOFT["places"],
             bands=({"series": (6, 5), "fill": "rgba(110,110,110,0.10)"},),
         )
-        self._linear = _plot(gui, "Rate of linear momentum along the push (N)", _rates(), soft=_SOFT["linear"])
+        self._linear = _plot(
+            gui, "Rate of linear momentum along the push (N)", _rates(), soft=_SOFT["linear"]
+        )
         self._angular = _plot(
             gui, "Rate of angular momentum about the axis across (N m)", _rates(), soft=_SOFT["angular"]
         )

@@ -136,7 +136,9 @@ def test_a_robot_at_rest_has_its_plots_drawn_once_a_second(desk, pushed):
     assert drawings(desk, rows[filling:]) <= 6
 
 
-@pytest.mark.parametrize(("name", "change"), [("com", 0.002), ("momentum_rate_measured", 2.0), ("momentum", 0.2)])
+@pytest.mark.parametrize(
+    ("name", "change"), [("com", 0.002), ("momentum_rate_measured", 2.0), ("momentum", 0.2)]
+)
 def test_what_can_be_seen_in_a_plot_is_drawn_at_once(desk, pushed, name, change):
     rows = standing_still(pushed, WINDOW + 3.0)
     drawings(desk, rows[:-50])
