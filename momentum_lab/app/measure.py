@@ -33,8 +33,14 @@ Report = Callable[[float], None]
 
 
 @dataclass
-class _Course:
-    """What a run with pushes notes down: delays of pushes, and memory over time."""
+class Course:
+    """What a run with pushes notes down.
+
+    Attributes:
+        delays: from each push to the drawing that shows it, s.
+        times: when memory was looked at, from the start of the run, s.
+        memory: what it was then, bytes.
+    """
 
     delays: list[float] = field(default_factory=list)
     times: list[float] = field(default_factory=list)
@@ -103,9 +109,9 @@ def _measured(
     )
 
 
-def _run(server: MeasuredServer, client: BareClient, seconds: float, report: Report) -> _Course:
+def _run(server: MeasuredServer, client: BareClient, seconds: float, report: Report) -> Course:
     """Push every second and a half."""
-    course, start = _Course(), time.perf_counter()
+    course, start = Course(), time.perf_counter()
     while (passed := time.perf_counter() - start) < seconds:
         course.delays.append(_push(client))
         client.read(max(0.1, _PUSH_EVERY - (time.perf_counter() - start - passed)))

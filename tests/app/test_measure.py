@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from momentum_lab.app.figures import AppMeasurement, figures
-from momentum_lab.app.measure import _Course, measure_app
+from momentum_lab.app.measure import Course, measure_app
 
 # A machine that runs other things at the same time may be this much slower than the bounds of the report.
 SECONDS = 4.5
@@ -62,5 +62,5 @@ def test_memory_is_judged_after_the_first_minute():
     # 100 MB in the first minute, 2 MB a minute from then on.
     times = [1.5 * i for i in range(200)]
     sizes = [1e8 * min(1.0, t / 60.0) + 2e6 * max(0.0, t / 60.0 - 1.0) for t in times]
-    assert _Course([], times, sizes).growth == pytest.approx(2.0, rel=1e-6)
-    assert _Course([], times[:60], sizes[:60]).growth is None
+    assert Course([], times, sizes).growth == pytest.approx(2.0, rel=1e-6)
+    assert Course([], times[:60], sizes[:60]).growth is None
