@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -61,8 +60,8 @@ class Figure:
     """One line of the report.
 
     Attributes:
-        name: what was measured.
-        value: the figure with its unit.
+        name: what was measured, and its unit.
+        value: the figure.
         bound: what it has to be; empty: told without a bound.
         reached: whether it is; None: there is no bound, or the run was too short to tell.
     """
@@ -101,44 +100,44 @@ def _pace(m: AppMeasurement) -> list[Figure]:
         Figure(
             "real-time factor", f"{m.real_time_factor:.3f}", "1.00 ± 0.01", low <= m.real_time_factor <= high
         ),
-        _at_least("drawings per second", m.drawings_per_second, "", FEWEST_DRAWINGS),
-        _at_most("ticks late by 5 ms, per minute", m.late_ticks_per_minute, "", MOST_LATE_TICKS),
-        _at_most("push to drawing, longest", 1e3 * m.push_delay_longest, " ms", 1e3 * LONGEST_DELAY),
-        Figure("push to drawing, median", f"{1e3 * m.push_delay:.1f} ms", "", None),
+        _at_least("drawings per second", m.drawings_per_second, FEWEST_DRAWINGS),
+        _at_most("ticks over 5 ms late, per minute", m.late_ticks_per_minute, MOST_LATE_TICKS),
+        _at_most("push to drawing, longest, ms", 1e3 * m.push_delay_longest, 1e3 * LONGEST_DELAY),
+        _told("push to drawing, median, ms", 1e3 * m.push_delay),
     ]
 
 
 def _cost(m: AppMeasurement) -> list[Figure]:
-    grown = math.nan if m.memory_growth is None else m.memory_growth
-    memory = _at_most("memory growth after a minute", grown, " MB/min", MOST_GROWTH)
+    memory = _at_most("memory growth after a minute, MB/min", m.memory_growth or 0.0, MOST_GROWTH)
     if m.memory_growth is None:
-        memory = Figure(memory.name, "needs two minutes", memory.bound, None)
-    return [
-        _at_most("server CPU for drawing", 100.0 * m.server_cpu, " % of a core", 100.0 * MOST_CPU),
-        memory,
-    ]
+        memory = Figure(memory.name, "too short", memory.bound, None)
+    return [_at_most("server CPU for drawing, % of a core", 100.0 * m.server_cpu, 100.0 * MOST_CPU), memory]
 
 
 def _silence(m: AppMeasurement) -> list[Figure]:
     return [
-        _at_most("messages per second, paused", m.sent_while_paused, "", 0.0),
-        _at_most("changes per second, standing", m.drawn_while_standing, "", 0.0),
-        Figure("messages per second, pushed", f"{m.messages_per_second:.0f}", "", None),
+        _at_most("messages per second, paused", m.sent_while_paused, 0.0),
+        _at_most("changes per second, standing still", m.drawn_while_standing, 0.0),
+        _told("messages per second, pushed", m.messages_per_second),
     ]
 
 
 def _newcomer(m: AppMeasurement) -> list[Figure]:
-    worth = f"{m.aged / 60.0:.0f} min"
+    name = f"stall when a tab opens after {m.aged / 60.0:.0f} min, ms"
     return [
-        _at_most(f"stall when a tab opens after {worth}", 1e3 * m.stall, " ms", 1e3 * LONGEST_STALL),
-        Figure("first picture of the first tab", f"{1e3 * m.first_picture:.0f} ms", "", None),
-        Figure("first picture of that tab", f"{1e3 * m.first_picture_aged:.0f} ms", "", None),
+        _at_most(name, 1e3 * m.stall, 1e3 * LONGEST_STALL),
+        _told("first picture of the first tab, ms", 1e3 * m.first_picture),
+        _told("first picture of that tab, ms", 1e3 * m.first_picture_aged),
     ]
 
 
-def _at_most(name: str, value: float, unit: str, bound: float) -> Figure:
-    return Figure(name, f"{value:.1f}{unit}", f"at most {bound:g}{unit}", value <= bound)
+def _at_most(name: str, value: float, bound: float) -> Figure:
+    return Figure(name, f"{value:.1f}", f"at most {bound:g}", value <= bound)
 
 
-def _at_least(name: str, value: float, unit: str, bound: float) -> Figure:
-    return Figure(name, f"{value:.1f}{unit}", f"at least {bound:g}{unit}", value >= bound)
+def _at_least(name: str, value: float, bound: float) -> Figure:
+    return Figure(name, f"{value:.1f}", f"at least {bound:g}", value >= bound)
+
+
+def _told(name: str, value: float) -> Figure:
+    return Figure(name, f"{value:.1f}", "", None)

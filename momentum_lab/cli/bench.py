@@ -7,6 +7,7 @@ from argparse import Namespace
 from typing import Any
 
 import msgspec
+from rich.box import SIMPLE
 from rich.console import Console
 from rich.table import Table
 
@@ -70,7 +71,7 @@ def _bench_app(seconds: float, as_json: bool) -> int:
 
 
 def _show_app(seconds: float, lines: list[Figure]) -> None:
-    table = Table(title=f"The app with one client, {seconds:g} s")
+    table = Table(title=f"The app with one client, {seconds:g} s", box=SIMPLE)
     for heading, justify in (("", "left"), ("measured", "right"), ("to reach", "left"), ("reached", "left")):
         table.add_column(heading, justify=justify)  # type: ignore[arg-type]
     for line in lines:
