@@ -19,8 +19,8 @@ PUSH = "Push  (P)"
 _ARROW = "/marks/push"
 # A push stays in the picture for a little more than a second; the next one has to appear anew.
 _PUSH_EVERY = 1.5
-# Settling before what is measured, s; and from the last push until the robot stands still, s of simulated time.
-_WARM_UP, _CALM = 3.0, 8.0
+# Simulated time until a new robot stands still, s; and settling after the first push, s.
+_CALM, _WARM_UP = 2.0, 3.0
 # How long silence is listened to, s.
 _LISTEN = 2.0
 # Growth of memory is told from here on, and from so many seconds more, s.
@@ -79,6 +79,7 @@ def measure_app(
 def _measured(
     server: MeasuredServer, client: BareClient, seconds: float, first_picture: float, report: Report
 ) -> AppMeasurement:
+    drawn_while_standing = _standing(client)
     client.set_value(PUSH, True)
     received = client.read(_WARM_UP)
     before, then, simulated = server.vitals(), *received.told
@@ -87,7 +88,7 @@ def _measured(
     elapsed, after = time.perf_counter() - start, server.vitals()
     pictures, messages = received.drawings - pictures, received.messages - messages
     now, simulated_now = received.told
-    drawn_while_standing, sent_while_paused = _silence(client)
+    sent_while_paused = _paused(client)
     aged = _HOUR * min(1.0, seconds / _LONG)
     stall, first_picture_aged = _newcomer(server, client, round(aged * messages / elapsed))
     return AppMeasurement(
@@ -135,17 +136,19 @@ def _push(client: BareClient) -> float:
     return received.shown[_ARROW] - pressed
 
 
-def _silence(client: BareClient) -> tuple[float, float]:
-    """Changes in the scene per second while the robot stands still, messages per second while it is paused."""
-    pushed = client.received.told[1]
-    changes = client.read_until(lambda received: received.told[1] > pushed + _CALM, _PATIENCE).changes
-    standing = client.read(_LISTEN).changes - changes
+def _standing(client: BareClient) -> float:
+    """Changes in the scene per second while the robot stands still and time runs."""
+    changes = client.read_until(lambda received: received.told[1] > _CALM, _PATIENCE).changes
+    return (client.read(_LISTEN).changes - changes) / _LISTEN
+
+
+def _paused(client: BareClient) -> float:
+    """Messages per second while time stands still in the middle of a push."""
     client.set_value("time", "Pause")
     messages = client.read(0.5).messages
-    paused = client.read(_LISTEN).messages - messages
+    messages = client.read(_LISTEN).messages - messages
     client.set_value("time", "Play")
-    client.read(0.5)
-    return standing / _LISTEN, paused / _LISTEN
+    return messages / _LISTEN
 
 
 def _newcomer(server: MeasuredServer, client: BareClient, messages: int) -> tuple[float, float]:
