@@ -103,6 +103,7 @@ class Plots:
     def _draw(self, curves: Curves) -> None:
         self._next_rest = self._clock() + _RESTING
         x = _window(curves.time)
+        pushed = _framed(np.append(curves.pushed[:-1], 0.0))  # or a push that goes on would be filled to the end
         limits = [_held(_framed(limit)) for limit in curves.limits]
         columns = (
             (self._places, [_framed(curves.points[name]) for name in _POINTS] + limits),
@@ -111,7 +112,7 @@ class Plots:
             (self._momenta, [_framed(curves.momentum), _framed(curves.angular_momentum)]),
         )
         for plot, ys in columns:
-            plot.data = (x, *ys, _framed(curves.pushed))
+            plot.data = (x, *ys, pushed)
 
 
 def at_rest(curves: Curves) -> bool:

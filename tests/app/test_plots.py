@@ -80,6 +80,16 @@ def test_limits_have_no_gaps(desk, pushed):
         assert np.isfinite(limit).all()
 
 
+def test_a_push_that_goes_on_is_not_drawn_into_the_future(desk, pushed):
+    rows = pushed.recording.rows(20)
+    during = pushed.recording.column("push_wrench", 20).any(axis=1)
+    desk.plots.add(rows[: np.flatnonzero(during)[-1] + 1])
+    for handle in desk.handles:
+        column = handle.data[-1]
+        assert column[-3:-1].tolist() == [1.0, 0.0]
+        assert np.isnan(column[-1])
+
+
 def test_ten_drawings_a_second(desk, pushed):
     rows = pushed.recording.rows(20)
     drawn = 0
