@@ -103,7 +103,8 @@ class Plots:
     def _draw(self, curves: Curves) -> None:
         self._next_rest = self._clock() + _RESTING
         x = _window(curves.time)
-        pushed = _framed(np.append(curves.pushed[:-1], 0.0))  # or a push that goes on would be filled to the end
+        # A push that goes on would be filled from the last sample to the end of the window.
+        pushed = _framed(np.append(curves.pushed[:-1], 0.0))
         limits = [_held(_framed(limit)) for limit in curves.limits]
         columns = (
             (self._places, [_framed(curves.points[name]) for name in _POINTS] + limits),
