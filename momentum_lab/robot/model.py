@@ -65,7 +65,9 @@ class RobotModel:
         self.position_upper = self.model.upperPositionLimit[7:].copy()
         self.effort_limit = self.model.effortLimit[_BASE_DOF:].copy()
         self.mass = float(pin.computeTotalMass(self.model))
+        self._weight = self.mass * self.model.gravity.linear
         self._no_acceleration = np.zeros(self.nv)
+        self._sole_frames = [sole.frame for sole in self.soles]
         _check(self)
 
     @classmethod
@@ -124,40 +126,46 @@ class RobotModel:
     def at(self, state: State) -> Dynamics:
         """Everything that control and physics need to know about a state.
 
-        A_G, its rate and the momentum come from `dccrba`, the one call whose dA_G/dt stands on its own
-        (Eqs. 15, 20); bias accelerations from forward kinematics at zero acceleration, run last because
-        the recursions before it leave other accelerations behind (Eqs. 31, 45).
+        One pass of `crba` in world coordinates gives H, A_G, the CoM and all Jacobians. The drift of Eq. 20
+        needs no second one: the six base rows of the equations of motion, taken about the CoM in world axes,
+        are A_G a + dA_G v - m g, so dA_G v is what `nonLinearEffects` says there, without gravity (Eqs. 1, 2,
+        20, 29). The last pass is forward kinematics at zero joint acceleration, for the drift of frames
+        (Eqs. 31, 45).
         """
         model, data, q, v = self.model, self.data, state.q, state.v
-        pin.dccrba(model, data, q, v)
+        mass_matrix = pin.crba(model, data, q, pin.Convention.WORLD).copy()
         centroidal_map = data.Ag.copy()
-        centroidal_bias = data.dAg @ v
-        momentum = data.hg.vector.copy()
-        com, com_velocity = data.com[0].copy(), data.vcom[0].copy()
-        locked_inertia = data.Ig.inertia.copy()
-        mass_matrix = pin.crba(model, data, q).copy()
+        com = data.com[0].copy()
         nonlinear_effects = pin.nonLinearEffects(model, data, q, v).copy()
         pin.forwardKinematics(model, data, q, v, self._no_acceleration)
         pin.updateFramePlacements(model, data)
-        frames = [sole.frame for sole in self.soles]
+        base, frames, momentum = data.oMi[1], self._sole_frames, centroidal_map @ v
+        soles = [data.oMf[frame] for frame in frames]
         return Dynamics(
             state=state,
             com_in_world=com,
-            com_velocity=com_velocity,
+            com_velocity=momentum[:3] / self.mass,
             centroidal_map=centroidal_map,
-            centroidal_bias=centroidal_bias,
+            centroidal_bias=self._centroidal_bias(nonlinear_effects, base, com),
             momentum=momentum,
-            locked_inertia=locked_inertia,
+            locked_inertia=centroidal_map[3:, 3:_BASE_DOF] @ base.rotation.T,
             mass_matrix=mass_matrix,
             nonlinear_effects=nonlinear_effects,
-            sole_position=np.array([data.oMf[f].translation for f in frames]),
-            sole_rotation=np.array([data.oMf[f].rotation for f in frames]),
+            sole_position=np.array([sole.translation for sole in soles]),
+            sole_rotation=np.array([sole.rotation for sole in soles]),
             sole_jacobian=np.array([pin.getFrameJacobian(model, data, f, _WORLD_ALIGNED) for f in frames]),
             sole_bias=np.array([self._bias(f) for f in frames]),
             pelvis_rotation=data.oMf[self.pelvis].rotation.copy(),
             pelvis_jacobian=pin.getFrameJacobian(model, data, self.pelvis, _WORLD_ALIGNED),
             pelvis_bias=self._bias(self.pelvis),
         )
+
+    def _centroidal_bias(self, nonlinear_effects: np.ndarray, base: pin.SE3, com: np.ndarray) -> np.ndarray:
+        """dA_G/dt v about the CoM (6,): the base rows of C v + tau_g (nv,) in world axes, without gravity."""
+        base_in_com = pin.SE3(base.rotation, base.translation - com)
+        bias = base_in_com.act(pin.Force(nonlinear_effects[:_BASE_DOF])).vector
+        bias[:3] += self._weight
+        return bias
 
     def _bias(self, frame: int) -> np.ndarray:
         """Classical acceleration of a frame at zero joint acceleration (6,)."""
