@@ -141,7 +141,8 @@ def _together(touching: list[Touch], nv: int) -> Contacts:
     if not touching:
         return Contacts(np.zeros((0, nv)), np.zeros((0, 0)), np.zeros(0), ())
     gap = np.concatenate([touch.gap for touch in touching])
-    spread, friction = np.zeros((3 * gap.size, 6 * len(touching))), ()
+    spread = np.zeros((3 * gap.size, 6 * len(touching)))
+    friction: tuple[float, ...] = ()
     for body, touch in enumerate(touching):
         row = 3 * len(friction)
         friction += (touch.patch.friction,) * touch.gap.size
