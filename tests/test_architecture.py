@@ -48,7 +48,7 @@ PLACES = {
     "qpsolvers": ("control.qp",),
     "daqp": ("control.qp",),
     "clarabel": ("control.qp",),
-    "placo": ("robot.posture", "control.placo_body", "bench.placo_peer"),
+    "placo": ("robot.posture", "control.placo_body", "control.placo_tasks", "bench.placo_peer"),
 }
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueGains
 from momentum_lab.control.controller import Controller
+from momentum_lab.control.placo_wbc import PlacoWbc, PlacoWbcGains
 from momentum_lab.control.resolved_momentum import ResolvedMomentum, ResolvedMomentumGains
 from momentum_lab.errors import InputError
 from momentum_lab.robot.model import RobotModel
@@ -42,6 +43,12 @@ CONTROLLERS: dict[str, ControllerEntry] = {
         summary="Momentum to joint rates to stiff joint servos; the CoP is nobody's business (section 4.1).",
         make=ResolvedMomentum,
         gains=ResolvedMomentumGains(),
+    ),
+    "placo-wbc": ControllerEntry(
+        title="PlaCo whole-body",
+        summary="The peer: soft tasks on CoM, pelvis and posture over planar contacts, in one program.",
+        make=PlacoWbc,
+        gains=PlacoWbcGains(),
     ),
 }
 
