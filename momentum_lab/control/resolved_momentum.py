@@ -180,17 +180,18 @@ class ResolvedMomentum:
     ) -> np.ndarray:
         """Tau = k [(theta* - theta) + T (theta*' - theta')] (na,), N m, as at the end of the tick.
 
-        A drive is faster than a tick: its torque is the one of k and d = T k once the joint, with the inertia I it
-        would have on a robot in the air, has moved on under that torque. Both are therefore less by the factor
-        I / (I + d dt + k dt^2).
+        A drive is faster than a tick: its torque is the one of k and T once the joints have moved on under that
+        torque, (H + S^T D S) a = S^T tau_0 and tau = tau_0 - D S a with D = k (T dt + dt^2). They are taken to
+        move as on a robot in the air; a foot on the ground only holds them.
         """
         dt, state = self.timestep, dynamics.state
         stiffness = gains.servo_stiffness * self.robot.effort_limit
-        damping = gains.servo_damping * stiffness
-        inertia = 1.0 / np.linalg.inv(dynamics.mass_matrix).diagonal()[6:]
-        behind = command.q[7:] - state.q[7:] - dt * state.v[6:]
-        torque = stiffness * behind + damping * (command.v[6:] - state.v[6:])
-        return torque * inertia / (inertia + damping * dt + stiffness * dt**2)
+        ahead = gains.servo_damping + dt
+        behind = command.q[7:] - state.q[7:] + gains.servo_damping * command.v[6:] - ahead * state.v[6:]
+        torque, yielding = np.zeros(self.robot.nv), np.zeros(self.robot.nv)
+        torque[6:], yielding[6:] = stiffness * behind, stiffness * ahead * dt
+        moved = np.linalg.solve(dynamics.mass_matrix + np.diag(yielding), torque)
+        return (torque - yielding * moved)[6:]
 
     def _fallback(
         self, dynamics: Dynamics, reference: Reference, memory: SetPoint, reason: str
