@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from momentum_lab.control.controller import Reference
+from momentum_lab.momentum.directions import ALL, Directions
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -21,10 +22,14 @@ class StandingGoal:
         robot: the robot.
         home: the standing posture, with everything computed.
         stance: the feet that carry the robot, as indices.
+        controlled: the directions of momentum that are asked for (section 5.3.1).
     """
 
-    def __init__(self, robot: RobotModel, home: Dynamics, stance: tuple[int, ...]) -> None:
+    def __init__(
+        self, robot: RobotModel, home: Dynamics, stance: tuple[int, ...], controlled: Directions = ALL
+    ) -> None:
         self.stance = stance
+        self.controlled = controlled
         self.posture = home.state.q[7:].copy()
         self._centers = [np.append((sole.lower + sole.upper) / 2.0, 0.0) for sole in robot.soles]
         self._height = home.com_in_world[2] - self._stance_center(home)[2]
@@ -43,6 +48,7 @@ class StandingGoal:
             pelvis_rotation=_about_vertical(self._heading(dynamics)) @ self._pelvis,
             stance=self.stance,
             sole_height=np.zeros(len(dynamics.sole_position)),
+            controlled=self.controlled,
         )
 
     def _stance_center(self, dynamics: Dynamics) -> np.ndarray:
