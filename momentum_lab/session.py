@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import msgspec
@@ -14,6 +14,7 @@ import pinocchio as pin
 from momentum_lab.control.controller import Controller, ControlOutput
 from momentum_lab.control.fallback import limp
 from momentum_lab.control.gains import with_gains
+from momentum_lab.control.handover import Handover
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.control.standing import StandingGoal
 from momentum_lab.errors import InputError, ScenarioError, SimulationError
@@ -76,6 +77,9 @@ class Session:
     last_failure: str | None
     _controller: Controller
     _memory: Any
+    _torque: np.ndarray | None
+    _taken_over: bool
+    _handover: Handover | None
     _simulator: Simulator
     _tick_of_run: int
 
@@ -155,7 +159,17 @@ class Session:
         if output.failure is not None:
             self.solver_failures += 1
             self.last_failure = output.failure
-        return output
+        torque = self._without_jump(output.torque)
+        return output if torque is output.torque else replace(output, torque=torque)
+
+    def _without_jump(self, torque: np.ndarray) -> np.ndarray:
+        """The controller's torque; after a takeover it starts from the torque that was applied before."""
+        if self._taken_over and self._torque is not None:
+            self._handover = Handover.between(self._torque, torque)
+        elif self._handover is not None:
+            self._handover = self._handover.later(self.scenario.timestep)
+        self._taken_over = False
+        return torque if self._handover is None else self._handover.applied(torque)
 
     def _record(self, dynamics: Dynamics, output: ControlOutput, step: Step) -> Sample:
         tick = Tick(
@@ -174,6 +188,7 @@ class Session:
 
     def _advance(self, output: ControlOutput, step: Step) -> None:
         self._memory = output.memory
+        self._torque = step.torque
         self.state = step.state
         self.ticks += 1
         self._tick_of_run += 1
@@ -214,6 +229,7 @@ class Session:
             case SelectController(name):
                 self._select(name)
                 self._memory = self._controller.initial_memory(self.dynamics)
+                self._taken_over = True
             case ApplyPush(push):
                 now = msgspec.structs.replace(self._checked_push(push), start=self.time)
                 self.pushes = (*self.pushes, now)
@@ -237,6 +253,8 @@ class Session:
         self._tick_of_run = 0
         self._simulator = Simulator(self.robot, self._ground, self.scenario.timestep)
         self._memory = self._controller.initial_memory(self.dynamics)
+        self._torque = self._handover = None
+        self._taken_over = False
         self.recording.clear()
 
     def _checked_push(self, push: Push) -> Push:

@@ -48,7 +48,7 @@ PLACES = {
     "qpsolvers": ("control.qp",),
     "daqp": ("control.qp",),
     "clarabel": ("control.qp",),
-    "placo": ("robot.posture", "bench.peer"),
+    "placo": ("robot.posture", "control.placo_body", "control.placo_tasks", "bench.peer"),
     "mujoco": ("physics.mujoco_model", "bench"),
 }
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from typing import Any
 
 import numpy as np
 import placo
 
+from momentum_lab.control.placo_body import middle_frame, placo_body
 from momentum_lab.errors import SimulationError
 from momentum_lab.physics.mujoco_model import load_mujoco, mujoco_model
 from momentum_lab.robot.model import RobotModel, Sole
 from momentum_lab.robot.state import State
-from momentum_lab.robot.urdf import add_fixed_link, bare_urdf
 
 # PlaCo's default cost on torques drags its CoM task away by up to 0.5 m/s^2 on TALOS; without any cost on
 # forces the feet would push against each other as hard as their friction lets them.
@@ -46,9 +45,7 @@ class PlacoPeer:
 
     def __init__(self, robot: RobotModel, home: State, timestep: float) -> None:
         self.robot = robot
-        self.body = placo.RobotWrapper(str(robot.urdf), placo.Flags.ignore_collisions, _urdf(robot))
-        for name, inertia in zip(robot.joint_names, robot.model.armature[6:].tolist(), strict=True):
-            self.body.set_rotor_inertia(name, inertia)
+        self.body = placo_body(robot)
         self.solver = placo.DynamicsSolver(self.body)
         for name in robot.joint_names:
             self.solver.set_qdd_safe(name, _BRAKING)
@@ -92,7 +89,7 @@ class PlacoPeer:
         posture.kp = _POSTURE_GAIN
 
     def _contact(self, sole: Sole) -> placo.Contact6D:
-        frame = _contact_frame(sole)
+        frame = middle_frame(sole)
         task = self.solver.add_frame_task(frame, self.body.get_T_world_frame(frame))
         task.configure(sole.name, "hard")
         for part in (task.position(), task.orientation()):
@@ -102,19 +99,6 @@ class PlacoPeer:
         contact.mu = _FRICTION
         contact.weight_forces = contact.weight_moments = contact.weight_tangentials = _FORCE_COST
         return contact
-
-
-def _urdf(robot: RobotModel) -> str:
-    """The robot without meshes, with a frame at the middle of each sole."""
-    root = bare_urdf(robot.urdf, robot.spec.feet)
-    for sole in robot.soles:
-        middle = (*((sole.lower + sole.upper) / 2.0), 0.0)
-        add_fixed_link(root, _contact_frame(sole), robot.spec.feet[sole.name].frame, middle)
-    return ET.tostring(root, encoding="unicode")
-
-
-def _contact_frame(sole: Sole) -> str:
-    return f"{sole.name}_contact"
 
 
 class PeerLoop:

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from momentum_lab.momentum.directions import ALL, Directions
 from momentum_lab.robot.state import Dynamics
 
 
@@ -22,6 +23,8 @@ class Reference:
         pelvis_rotation: desired pelvis axes in the world (3, 3).
         stance: the feet that carry the robot, as indices.
         sole_height: height of the ground under each sole origin (F,), m.
+        controlled: which of l_x, l_y, l_z, k_x, k_y, k_z are asked for; the others are left free
+            (section 5.3.1).
     """
 
     com: np.ndarray
@@ -31,6 +34,7 @@ class Reference:
     pelvis_rotation: np.ndarray
     stance: tuple[int, ...]
     sole_height: np.ndarray
+    controlled: Directions = ALL
 
 
 @dataclass(frozen=True, slots=True)

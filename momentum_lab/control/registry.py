@@ -8,6 +8,8 @@ from typing import Any
 
 from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueGains
 from momentum_lab.control.controller import Controller
+from momentum_lab.control.placo_wbc import PlacoWbc, PlacoWbcGains
+from momentum_lab.control.resolved_momentum import ResolvedMomentum, ResolvedMomentumGains
 from momentum_lab.errors import InputError
 from momentum_lab.robot.model import RobotModel
 
@@ -35,6 +37,18 @@ CONTROLLERS: dict[str, ControllerEntry] = {
         summary="Admissible foot forces, then accelerations, then torques (sections 4.2 and 5.1).",
         make=ComputedTorque,
         gains=ComputedTorqueGains(),
+    ),
+    "resolved-momentum": ControllerEntry(
+        title="Resolved momentum",
+        summary="Momentum to joint rates to stiff joint servos; the CoP is nobody's business (section 4.1).",
+        make=ResolvedMomentum,
+        gains=ResolvedMomentumGains(),
+    ),
+    "placo-wbc": ControllerEntry(
+        title="PlaCo whole-body",
+        summary="The peer: soft tasks on CoM, pelvis and posture over planar contacts, in one program.",
+        make=PlacoWbc,
+        gains=PlacoWbcGains(),
     ),
 }
 

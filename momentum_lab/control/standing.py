@@ -8,6 +8,7 @@ import numpy as np
 
 from momentum_lab.compiled import compiled
 from momentum_lab.control.controller import Reference
+from momentum_lab.momentum.directions import ALL, Directions
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -22,10 +23,14 @@ class StandingGoal:
         robot: the robot.
         home: the standing posture, with everything computed.
         stance: the feet that carry the robot, as indices.
+        controlled: the directions of momentum that are asked for (section 5.3.1).
     """
 
-    def __init__(self, robot: RobotModel, home: Dynamics, stance: tuple[int, ...]) -> None:
+    def __init__(
+        self, robot: RobotModel, home: Dynamics, stance: tuple[int, ...], controlled: Directions = ALL
+    ) -> None:
         self.stance = stance
+        self.controlled = controlled
         self.posture = home.state.q[7:].copy()
         self._centers = np.array([np.append((sole.lower + sole.upper) / 2.0, 0.0) for sole in robot.soles])
         self._share = np.array([(foot in stance) / len(stance) for foot in range(len(robot.soles))])
@@ -47,6 +52,7 @@ class StandingGoal:
             pelvis_rotation=turned_about_vertical(heading, self._pelvis),
             stance=self.stance,
             sole_height=self._level,
+            controlled=self.controlled,
         )
 
     def _place(self, dynamics: Dynamics) -> tuple[np.ndarray, float]:

@@ -1,4 +1,4 @@
-"""Standing postures by inverse kinematics; the only file that imports PlaCo."""
+"""Standing postures by PlaCo's inverse kinematics."""
 
 from __future__ import annotations
 
