@@ -8,6 +8,7 @@ from typing import Any
 
 from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueGains
 from momentum_lab.control.controller import Controller
+from momentum_lab.control.slack_qp import SlackGains, SlackQP
 from momentum_lab.errors import InputError
 from momentum_lab.robot.model import RobotModel
 
@@ -35,6 +36,12 @@ CONTROLLERS: dict[str, ControllerEntry] = {
         summary="Admissible foot forces, then accelerations, then torques (sections 4.2 and 5.1).",
         make=ComputedTorque,
         gains=ComputedTorqueGains(),
+    ),
+    "slack-qp": ControllerEntry(
+        title="Output tasks with slacks",
+        summary="CoM, pelvis, swing foot and posture under CoP bounds, least slack first (section 5.2).",
+        make=SlackQP,
+        gains=SlackGains(),
     ),
 }
 
