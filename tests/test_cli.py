@@ -23,6 +23,7 @@ from momentum_lab.cli import listing, main, progress
 from momentum_lab.cli import run as run_command
 from momentum_lab.cli.arguments import parsed
 from momentum_lab.cli.choices import chosen_scenario
+from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import SimulationError
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import load_trace
@@ -89,7 +90,7 @@ BAD_VALUES = [
     ("run stand --seed -1", "--seed: got -1; allowed: a whole number from 0 to 4294967295"),
     ("run stand --seed 1.5", "--seed: got 1.5; allowed: a whole number from 0 to 4294967295"),
     ("run stand --engine mujoco", "--engine: got mujoco; allowed: one of pinocchio"),
-    ("run stand --controller magic", "--controller: got magic; allowed: one of computed-torque"),
+    ("run stand --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
     (
         "run stand --set linear_damping",
         "--set: got linear_damping; allowed: GAIN=VALUE, such as linear_damping=8",
@@ -114,7 +115,7 @@ BAD_VALUES = [
     ("bench --seconds 0", "--seconds: got 0; allowed: a number from 1 to 600 (s)"),
     ("list", "list: got nothing; allowed: robots, controllers, scenarios, lessons, gains"),
     ("list cats", "list: got cats; allowed: robots, controllers, scenarios, lessons, gains"),
-    ("list gains --controller magic", "--controller: got magic; allowed: one of computed-torque"),
+    ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
     ("fly", "command: got fly; allowed: app, run, list, bench"),
 ]
 
@@ -127,9 +128,12 @@ def test_bad_value_is_one_line_that_names_it(words: str, message: str, capsys: O
 @pytest.mark.parametrize(
     ("words", "start"),
     [
-        ("run", "scenario: got nothing; allowed: one of one-leg, push-backward, "),
-        ("run nope", "scenario: got nope; allowed: one of one-leg, push-backward, "),
-        ("app --scenario nope", "--scenario: got nope; allowed: one of one-leg, push-backward, "),
+        ("run", "scenario: got nothing; allowed: one of one-leg, outside-the-foot, push-backward, "),
+        ("run nope", "scenario: got nope; allowed: one of one-leg, outside-the-foot, push-backward, "),
+        (
+            "app --scenario nope",
+            "--scenario: got nope; allowed: one of one-leg, outside-the-foot, push-backward, ",
+        ),
         ("app --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
         ("run stand --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
         ("run stand --robot /", "--robot: got /; allowed: one of g1, icub, "),
@@ -357,7 +361,7 @@ def test_recording_larger_than_memory_is_one_line(capsys: Output, monkeypatch: p
 
 @pytest.mark.parametrize(
     ("kind", "names"),
-    [("robots", robot_names()), ("scenarios", scenario_names()), ("controllers", ["computed-torque"])],
+    [("robots", robot_names()), ("scenarios", scenario_names()), ("controllers", list(CONTROLLERS))],
 )
 def test_list_gives_the_names(kind: str, names: list[str], capsys: Output) -> None:
     assert main(["list", kind, "--json"]) == 0

@@ -45,9 +45,9 @@ class SlackGains:
         8.0, "1/s", 0.0, 60.0, "Gamma_d of the CoM: how strongly its velocity is braked (Eq. 42)."
     )
     body_stiffness: float = gain(
-        25.0, "1/s^2", 0.0, 400.0, "Gamma_p of pelvis, swing foot and posture (Eq. 42)."
+        16.0, "1/s^2", 0.0, 400.0, "Gamma_p of pelvis, swing foot and posture (Eq. 42)."
     )
-    body_damping: float = gain(10.0, "1/s", 0.0, 60.0, "Gamma_d of pelvis, swing foot and posture (Eq. 42).")
+    body_damping: float = gain(8.0, "1/s", 0.0, 60.0, "Gamma_d of pelvis, swing foot and posture (Eq. 42).")
     com_weight: float = gain(
         1e4,
         "1",
@@ -170,7 +170,7 @@ class SlackQP:
 
 
 def unbounded(hessian: np.ndarray, gradient: np.ndarray, motion: StanceMotion) -> np.ndarray:
-    """The minimiser (n,) with the feet still and no other bound: what a ground that gives everything would be asked."""
+    """The minimiser (n,) with the feet still and no other bound: what is asked of a ground that gives all."""
     still = motion.still
     count, size = still.matrix.shape
     system = np.zeros((size + count, size + count))
