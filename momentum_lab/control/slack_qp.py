@@ -152,7 +152,8 @@ class SlackQP:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Slacks (Eq. 62), and what is small enough to decide only where they do not."""
         hessian, gradient = least_squares(outputs, motion.acceleration)
-        hessian.flat[:: len(gradient) + 1] += _RIDGE
+        joints = np.arange(self.robot.na)
+        hessian[joints, joints] += _RIDGE
         if len(program.carrying) > 1:
             uneven = program.centered(dynamics, motion.wrench)
             hessian += _EVEN_SHARE_WEIGHT * (uneven.matrix.T @ uneven.matrix)

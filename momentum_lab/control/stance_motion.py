@@ -14,6 +14,7 @@ import numpy as np
 
 from momentum_lab.control.accelerations import contact_constraint
 from momentum_lab.control.controller import Reference
+from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.robot.state import Dynamics
 
 _BASE = slice(0, 6)
@@ -42,7 +43,9 @@ class Affine:
 
 @dataclass(frozen=True, slots=True)
 class StanceMotion:
-    """A robot on C of its S stance feet, as functions of x = [theta''; w_1; ...; w_C-1] (n,).
+    """A robot on C of its S stance feet, as functions of x = [theta''; w_1 / (m g); ...; w_C-1 / (m g)] (n,).
+
+    Wrenches in parts of the weight are numbers of the size of accelerations, which solvers like.
 
     Attributes:
         acceleration: generalized acceleration (nv,).
@@ -103,12 +106,14 @@ def _wrenches(dynamics: Dynamics, acceleration: Affine, carrying: tuple[int, ...
     """Wrenches of the carrying feet: all but the last are free, the last one follows from the base rows."""
     free = 6 * (len(carrying) - 1)
     matrix = np.zeros((free + 6, joints + free))
-    matrix[:free, joints:] = np.eye(free)
+    weight = dynamics.mass_matrix[0, 0] * GRAVITY
+    matrix[:free, joints:] = weight * np.eye(free)
     offset = np.zeros(free + 6)
     base = acceleration.then(dynamics.mass_matrix[_BASE])
     needed, bias = base.matrix, base.offset + dynamics.nonlinear_effects[_BASE]
     for i, foot in enumerate(carrying[:-1]):
-        needed[:, joints + 6 * i : joints + 6 * i + 6] -= dynamics.sole_jacobian[foot, :, _BASE].T
+        lever = weight * dynamics.sole_jacobian[foot, :, _BASE].T
+        needed[:, joints + 6 * i : joints + 6 * i + 6] -= lever
     to_last = np.linalg.inv(dynamics.sole_jacobian[carrying[-1], :, _BASE].T)
     matrix[free:], offset[free:] = to_last @ needed, to_last @ bias
     return Affine(matrix, offset)
