@@ -9,6 +9,7 @@ from typing import Any
 from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueGains
 from momentum_lab.control.controller import Controller
 from momentum_lab.control.slack_qp import SlackGains, SlackQP
+from momentum_lab.control.whole_body_qp import WholeBodyGains, WholeBodyQP
 from momentum_lab.errors import InputError
 from momentum_lab.robot.model import RobotModel
 
@@ -42,6 +43,12 @@ CONTROLLERS: dict[str, ControllerEntry] = {
         summary="CoM, pelvis, swing foot and posture under CoP bounds, least slack first (section 5.2).",
         make=SlackQP,
         gains=SlackGains(),
+    ),
+    "whole-body-qp": ControllerEntry(
+        title="Whole-body QP",
+        summary="Accelerations, forces and torques in one quadratic program, momentum first.",
+        make=WholeBodyQP,
+        gains=WholeBodyGains(),
     ),
 }
 
