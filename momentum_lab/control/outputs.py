@@ -136,3 +136,11 @@ def least_squares(outputs: Sequence[Output], acceleration: Affine) -> tuple[np.n
     rows = jacobian @ acceleration.matrix
     weighted = rows.T * weight
     return weighted @ rows, -weighted @ missing
+
+
+def lightened(
+    hessian: np.ndarray, gradient: np.ndarray, outputs: Sequence[Output]
+) -> tuple[np.ndarray, np.ndarray]:
+    """The same objective with 1 as its largest weight: no output may outweigh the price of soft bounds."""
+    heaviest = max(output.weight for output in outputs)
+    return hessian / heaviest, gradient / heaviest

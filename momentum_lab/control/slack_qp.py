@@ -17,6 +17,7 @@ from momentum_lab.control.outputs import (
     Spring,
     com_output,
     least_squares,
+    lightened,
     pelvis_output,
     posture_output,
     sole_output,
@@ -158,7 +159,7 @@ class SlackQP:
             uneven = program.centered(dynamics, motion.wrench)
             hessian += _EVEN_SHARE_WEIGHT * (uneven.matrix.T @ uneven.matrix)
             gradient += _EVEN_SHARE_WEIGHT * (uneven.offset @ uneven.matrix)
-        return hessian, gradient
+        return lightened(hessian, gradient, outputs)
 
     def _momentum_rate(self, dynamics: Dynamics, motion: StanceMotion, x: np.ndarray) -> np.ndarray:
         """Momentum rate of x (6,), N and N m (Eq. 20)."""

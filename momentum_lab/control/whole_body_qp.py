@@ -16,7 +16,14 @@ from momentum_lab.control.fallback import hold
 from momentum_lab.control.foot_forces import Footing
 from momentum_lab.control.gains import gain
 from momentum_lab.control.momentum_lqr import LqrCosts
-from momentum_lab.control.outputs import Output, Spring, least_squares, pelvis_output, posture_output
+from momentum_lab.control.outputs import (
+    Output,
+    Spring,
+    least_squares,
+    lightened,
+    pelvis_output,
+    posture_output,
+)
 from momentum_lab.control.qp import solve
 from momentum_lab.control.regulated import RegulatedMomentum
 from momentum_lab.control.stance_motion import StanceMotion, stance_motion
@@ -27,7 +34,7 @@ from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
 # Keeps accelerations unique where nothing else decides.
-_RIDGE = 1e-4
+_RIDGE = 1e-5
 # What the less important momentum weighs against the more important one at the ends of the slider.
 _SECOND = 1e-3
 
@@ -52,20 +59,20 @@ class WholeBodyGains:
         0.0, "1", 0.0, 1.0, "0: momentum rates of Eqs. 37, 38; 1: those of a linear-quadratic regulator."
     )
     lqr_com_error: float = gain(
-        0.02, "m", 0.001, 0.2, "CoM error as bad as the other errors of the regulator: smaller is stiffer."
+        0.03, "m", 0.001, 0.2, "CoM error as bad as the other errors of the regulator: smaller is stiffer."
     )
     lqr_velocity_error: float = gain(
         0.1, "m/s", 0.005, 2.0, "CoM velocity as bad as the other errors of the regulator."
     )
     lqr_spin_error: float = gain(
-        0.5, "rad/s", 0.01, 10.0, "Average spin as bad as the other errors of the regulator."
+        0.25, "rad/s", 0.01, 10.0, "Average spin as bad as the other errors of the regulator."
     )
     lqr_force: float = gain(
-        0.03, "1", 0.001, 1.0, "Change of a foot's force, in parts of the weight, as bad as those errors."
+        0.02, "1", 0.001, 1.0, "Change of a foot's force, in parts of the weight, as bad as those errors."
     )
-    momentum_weight: float = gain(1e3, "1", 1.0, 1e6, "Weight of the momentum that the slider keeps.")
-    posture_weight: float = gain(0.1, "1", 0.0, 1e2, "Weight of the upper body's posture.")
-    pelvis_weight: float = gain(0.1, "1", 0.0, 1e2, "Weight of an upright pelvis.")
+    momentum_weight: float = gain(1e4, "1", 1.0, 1e6, "Weight of the momentum that the slider keeps.")
+    posture_weight: float = gain(0.01, "1", 0.0, 1e2, "Weight of the upper body's posture.")
+    pelvis_weight: float = gain(0.01, "1", 0.0, 1e2, "Weight of an upright pelvis.")
     posture_stiffness: float = gain(
         100.0, "1/s^2", 0.0, 400.0, "How strongly upper body and pelvis are pulled to their posture."
     )
@@ -73,7 +80,7 @@ class WholeBodyGains:
         20.0, "1/s", 0.0, 60.0, "How strongly motion of upper body and pelvis is braked."
     )
     force_weight: float = gain(
-        1e-2, "1", 1e-4, 10.0, "Weight of an even share of the weight between the feet."
+        1e-3, "1", 1e-5, 10.0, "Weight of an even share of the weight between the feet."
     )
     contact_damping: float = gain(
         50.0, "1/s", 0.0, 200.0, "kappa: how fast a stance foot is brought to rest and flat (Eq. 31)."
@@ -187,7 +194,7 @@ class WholeBodyQP:
         uneven = program.centered(dynamics, motion.wrench)
         hessian += gains.force_weight * (uneven.matrix.T @ uneven.matrix)
         gradient += gains.force_weight * (uneven.offset @ uneven.matrix)
-        return hessian, gradient
+        return lightened(hessian, gradient, outputs)
 
     def _program(self, stance: tuple[int, ...], carrying: tuple[int, ...]) -> StanceProgram:
         if (stance, carrying) not in self._programs:
