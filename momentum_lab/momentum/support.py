@@ -8,12 +8,16 @@ A contact force is (3,): two tangential components and the normal one, positive 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
 from momentum_lab.errors import InputError
 
 Vertex = tuple[float, float]
+
+_SAME = 1e-9
+"""Corners whose x differs by less than this are in one column, m."""
 
 _FLAT = 1e-12
 """A corner that spans less than this area with its neighbours is no corner, m^2."""
@@ -28,7 +32,7 @@ def support_polygon(contact_points: np.ndarray) -> np.ndarray:
     Returns:
         The corners, counter-clockwise, points on edges left out (K, 2), m.
     """
-    points = sorted({(x, y) for x, y, *_ in contact_points.tolist()})
+    points = _in_columns((x, y) for x, y, *_ in contact_points.tolist())
     if len(points) < 2:
         return np.array(points).reshape(-1, 2)
     return np.array(_chain(points)[:-1] + _chain(points[::-1])[:-1])
@@ -242,6 +246,19 @@ def friction_pyramid_edges(friction: float, count: int = 4) -> np.ndarray:
         raise InputError("count", count, "3 edges or more")
     angles = 2.0 * np.pi / count * np.arange(count)
     return np.column_stack((friction * np.cos(angles), friction * np.sin(angles), np.ones(count)))
+
+
+def _in_columns(points: Iterable[Vertex]) -> list[Vertex]:
+    """All different points from left to right, those of one column from bottom to top.
+
+    Where x differs by rounding alone, the order along the column decides, or the hull would turn back.
+    """
+    columns: list[Vertex] = []
+    left = -math.inf
+    for x, y in sorted(points):
+        left = x if x - left > _SAME else left
+        columns.append((left, y))
+    return sorted(set(columns))
 
 
 def _chain(points: list[Vertex]) -> list[Vertex]:
