@@ -100,4 +100,4 @@ def unpacked_frame(data: bytes) -> Frame:
 
 def rows_of(data: bytes, width: int) -> np.ndarray:
     """Samples (n, width) out of a frame's bytes."""
-    return np.frombuffer(data, dtype=np.float64).reshape(-1, width)
+    return np.frombuffer(data, dtype=np.float64).reshape(-1, width).copy()  # bytes are read-only

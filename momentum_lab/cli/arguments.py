@@ -234,4 +234,7 @@ def _bench_arguments(parser: _Parser) -> None:
         help="how long to measure, s",
     )
     parser.add_argument("--app", action="store_true", help="measure the app with one client instead")
+    parser.add_argument(
+        "--profile", action="store_true", help="show where the time of a tick goes, call by call, instead"
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")

@@ -11,9 +11,12 @@ from rich.console import Console
 from rich.table import Table
 
 from momentum_lab.bench.measure import ROBOTS, Percentiles, RobotBench, measure
+from momentum_lab.bench.profile import ProfileRow, profile
 from momentum_lab.bench.stages import STAGES
 from momentum_lab.cli.progress import progress
 from momentum_lab.provenance import versions
+from momentum_lab.scenario import Scenario
+from momentum_lab.session import Session
 
 _LABELS = {
     "state_terms": "state terms",
@@ -22,13 +25,19 @@ _LABELS = {
     "recording": "recording",
     "tick": "whole tick",
     "placo_solve": "PlaCo solve()",
+    "peer_tick": "PlaCo + MuJoCo tick",
+    "peer_placo": "  PlaCo",
+    "peer_mujoco": "  MuJoCo",
 }
+_BAR = 20
 
 
 def bench(args: Namespace) -> int:
     """Print the speed of each part of a tick for TALOS and G1, or of the app with one client."""
     if args.app:
         return _bench_app(args)
+    if args.profile:
+        return _profile(args)
     results = []
     for name in ROBOTS:
         with progress(f"measuring {name}") as report:
@@ -68,10 +77,44 @@ def _show(results: list[RobotBench]) -> None:
         table.add_row(_LABELS[field], *(_text(getattr(result, field)) for result in results))
     table.add_row("real-time factor", *(f"{result.real_time_factor:.2f}" for result in results))
     table.add_section()
-    table.add_row(_LABELS["placo_solve"], *(_text(result.placo_solve) for result in results))
-    table.caption = f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors"
+    for field in ("peer_tick", "peer_placo", "peer_mujoco", "placo_solve"):
+        table.add_row(_LABELS[field], *(_text(getattr(result, field)) for result in results))
+    table.add_row("tick / PlaCo + MuJoCo tick", *(_ratio(result.tick_to_peer) for result in results))
+    table.add_section()
+    table.add_row("calls per tick", *(f"{result.calls_per_tick:.0f}" for result in results))
+    missing = next((f"{result.missing}\n" for result in results if result.missing), "")
+    table.caption = f"{missing}load {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors"
     Console(markup=False).print(table)
 
 
-def _text(times: Percentiles) -> str:
-    return f"{times.p50:.0f}  {times.p99:.0f}"
+def _text(times: Percentiles | None) -> str:
+    return "-" if times is None else f"{times.p50:.0f}  {times.p99:.0f}"
+
+
+def _ratio(ratio: float | None) -> str:
+    return "-" if ratio is None else f"{ratio:.2f}"
+
+
+def _profile(args: Namespace) -> int:
+    """Print where the time of a tick goes, call by call."""
+    trees = {name: profile(Session(Scenario("profile", robot=name))) for name in ROBOTS}
+    if args.json:
+        print(_as_json({"profile": msgspec.to_builtins(trees)}))
+        return 0
+    for name, rows in trees.items():
+        _show_profile(name, rows)
+    return 0
+
+
+def _show_profile(name: str, rows: list[ProfileRow]) -> None:
+    table = Table(title=f"A tick of {name}, call by call", box=None)
+    table.add_column("function", overflow="ellipsis", no_wrap=True)
+    for heading in ("calls", "own us", "us"):
+        table.add_column(heading, justify="right")
+    table.add_column("share of the tick", min_width=_BAR)
+    for row in rows:
+        bar = "\u2588" * round(_BAR * row.total / rows[0].total)
+        numbers = (f"{row.calls:.1f}", f"{row.own:.1f}", f"{row.total:.1f}")
+        table.add_row(f"{'  ' * row.depth}{row.name}", *numbers, bar)
+    table.caption = "being watched makes every call about a microsecond slower"
+    Console(markup=False).print(table)

@@ -59,16 +59,16 @@ class WholeBodyGains:
         0.0, "1", 0.0, 1.0, "0: momentum rates of Eqs. 37, 38; 1: those of a linear-quadratic regulator."
     )
     lqr_com_error: float = gain(
-        0.03, "m", 0.001, 0.2, "CoM error as bad as the other errors of the regulator: smaller is stiffer."
+        0.02, "m", 0.001, 0.2, "CoM error as bad as the other errors of the regulator: smaller is stiffer."
     )
     lqr_velocity_error: float = gain(
         0.1, "m/s", 0.005, 2.0, "CoM velocity as bad as the other errors of the regulator."
     )
     lqr_spin_error: float = gain(
-        0.25, "rad/s", 0.01, 10.0, "Average spin as bad as the other errors of the regulator."
+        0.5, "rad/s", 0.01, 10.0, "Average spin as bad as the other errors of the regulator."
     )
     lqr_force: float = gain(
-        0.02, "1", 0.001, 1.0, "Change of a foot's force, in parts of the weight, as bad as those errors."
+        0.03, "1", 0.001, 1.0, "Change of a foot's force, in parts of the weight, as bad as those errors."
     )
     momentum_weight: float = gain(1e4, "1", 1.0, 1e6, "Weight of the momentum that the slider keeps.")
     posture_weight: float = gain(0.01, "1", 0.0, 1e2, "Weight of the upper body's posture.")

@@ -44,10 +44,10 @@ def joint_stops(robot: RobotModel, dynamics: Dynamics, timestep: float) -> Joint
     H_jj alone would be the inertia of a light foot under the weight of the whole robot.
     """
     angle = dynamics.state.q[7:]
-    excess = np.maximum(angle - robot.position_upper, 0.0) + np.minimum(angle - robot.position_lower, 0.0)
-    beyond = np.flatnonzero(excess)
-    if not beyond.size:
+    excess = angle - np.minimum(np.maximum(angle, robot.position_lower), robot.position_upper)
+    if not excess.any():
         return None
+    beyond = np.flatnonzero(excess)
     rows = beyond + 6
     as_strong = robot.effort_limit[beyond] * _TIME**2 / _GIVES_WAY
     inertia = np.maximum(dynamics.mass_matrix[rows, rows], as_strong)

@@ -16,7 +16,7 @@ from momentum_lab.momentum.wrench import sum_wrenches
 from tests.conftest import assert_close
 
 G = 9.81
-COSTS = LqrCosts(position=0.03, velocity=0.1, spin=0.25, force=0.02)
+COSTS = LqrCosts(position=0.02, velocity=0.1, spin=0.5, force=0.03)
 TWO_FEET = OperatingPoint(90.0, ((0.01, 0.1, -0.9), (-0.01, -0.1, -0.9)))
 ONE_FOOT = OperatingPoint(33.0, ((0.0, 0.0, -0.7),))
 
@@ -78,7 +78,7 @@ def test_no_feedback_nearby_is_cheaper(point, rng):
 
 def test_smaller_errors_allowed_make_a_stiffer_loop():
     soft = momentum_feedback(TWO_FEET, COSTS)
-    stiff = momentum_feedback(TWO_FEET, LqrCosts(0.01, 0.1, 0.25, 0.02))
+    stiff = momentum_feedback(TWO_FEET, LqrCosts(0.005, 0.1, 0.5, 0.03))
     assert -stiff[3, 0] > 1.2 * -soft[3, 0] > 0.0
 
 
