@@ -23,7 +23,7 @@ from momentum_lab.control.outputs import (
     sole_output,
 )
 from momentum_lab.control.qp import solve
-from momentum_lab.control.stance_motion import StanceMotion, stance_motion
+from momentum_lab.control.stance_motion import Affine, StanceMotion, stance_motion
 from momentum_lab.control.stance_output import stance_output
 from momentum_lab.control.stance_program import StanceBounds, StanceProgram
 from momentum_lab.errors import SolverError
@@ -113,8 +113,9 @@ class SlackQP:
         outputs = self._outputs(dynamics, reference, gains, priority)
         motion = stance_motion(dynamics, reference, carrying, gains.contact_damping)
         program = self._program(reference.stance, carrying)
-        hessian, gradient = self._objective(dynamics, outputs, motion, program)
-        problem = program.problem(hessian, gradient, dynamics, motion, _bounds(gains))
+        uneven = program.centered(dynamics, motion.wrench)
+        hessian, gradient = self._objective(outputs, motion, uneven)
+        problem = program.problem(hessian, gradient, dynamics, motion, uneven, _bounds(gains))
         try:
             x = solve(problem).x
         except SolverError as error:
@@ -149,14 +150,13 @@ class SlackQP:
         return [*outputs, posture_output(dynamics, reference, upper, body, gains.posture_weight * exchanged)]
 
     def _objective(
-        self, dynamics: Dynamics, outputs: list[Output], motion: StanceMotion, program: StanceProgram
+        self, outputs: list[Output], motion: StanceMotion, uneven: Affine
     ) -> tuple[np.ndarray, np.ndarray]:
         """Slacks (Eq. 62), and what is small enough to decide only where they do not."""
         hessian, gradient = least_squares(outputs, motion.acceleration)
         joints = np.arange(self.robot.na)
         hessian[joints, joints] += _RIDGE
-        if len(program.carrying) > 1:
-            uneven = program.centered(dynamics, motion.wrench)
+        if uneven.offset.size > 6:
             hessian += _EVEN_SHARE_WEIGHT * (uneven.matrix.T @ uneven.matrix)
             gradient += _EVEN_SHARE_WEIGHT * (uneven.offset @ uneven.matrix)
         return lightened(hessian, gradient, outputs)

@@ -11,7 +11,7 @@ from momentum_lab.control.stance_motion import Affine, StanceMotion
 from momentum_lab.control.wrench_cone import ROWS, wrench_cone
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.support import inset_rectangle
-from momentum_lab.momentum.wrench import wrench_shift_map
+from momentum_lab.momentum.wrench import skew
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -50,11 +50,15 @@ class StanceProgram:
         self.carrying = carrying
         self._weight = robot.mass * GRAVITY
         self._free = 6 * (len(carrying) - 1)
-        self._centers = [(robot.soles[foot].lower + robot.soles[foot].upper) / 2.0 for foot in carrying]
+        centers = ((robot.soles[foot].lower + robot.soles[foot].upper) / 2.0 for foot in carrying)
+        self._to_center = [-skew(np.append(center, 0.0)) for center in centers]
+        self._even = np.zeros(6 * len(carrying))
+        self._even[2::6] = 1.0 / len(carrying)
         equalities, cones = 6 * (len(stance) - 1), ROWS * len(carrying)
         self._soft = np.ones(robot.na + self._free + equalities + cones + robot.na, dtype=bool)
         self._soft[robot.na : -robot.na] = False
         self._labels = _labels(robot, stance, carrying)
+        self._known_cone: tuple[StanceBounds | None, np.ndarray, np.ndarray] = None, self._even, self._even
 
     def problem(
         self,
@@ -62,6 +66,7 @@ class StanceProgram:
         gradient: np.ndarray,
         dynamics: Dynamics,
         motion: StanceMotion,
+        centered: Affine,
         bounds: StanceBounds,
     ) -> QuadraticProgram:
         """An objective in x = [theta''; wrenches] under all bounds.
@@ -74,9 +79,10 @@ class StanceProgram:
             gradient: c (n,).
             dynamics: the state with everything computed.
             motion: what x makes of the robot.
+            centered: its wrenches, as `centered` gives them.
             bounds: what ground and joints are trusted with.
         """
-        cone, cone_bound = self._cones(dynamics, motion.wrench, bounds)
+        cone, cone_bound = self._cones(centered, bounds)
         low, high = joint_bounds(self.robot, dynamics, bounds.joint_limit_rate)
         limit = self.robot.effort_limit
         ratio, ratio_offset = motion.torque.matrix / limit[:, None], motion.torque.offset / limit
@@ -96,38 +102,41 @@ class StanceProgram:
 
         Zero for a robot at rest above the middle of its feet. In parts of the weight, moments per metre
         (6 C,).
-        """
-        matrix, offset = np.empty_like(wrench.matrix), np.empty_like(wrench.offset)
-        for i, to_center in enumerate(self._to_centers(dynamics)):
-            at = slice(6 * i, 6 * i + 6)
-            matrix[at], offset[at] = to_center @ wrench.matrix[at], to_center @ wrench.offset[at]
-        offset[2::6] -= self._weight / len(self.carrying)
-        return Affine(matrix / self._weight, offset / self._weight)
 
-    def _cones(
-        self, dynamics: Dynamics, wrench: Affine, bounds: StanceBounds
-    ) -> tuple[np.ndarray, np.ndarray]:
+        Args:
+            dynamics: the state with everything computed.
+            wrench: of the carrying feet about their sole origins, world axes (6 C from n).
+        """
+        size = 6 * len(self.carrying)
+        to_centers = np.zeros((size, size))
+        for i, foot in enumerate(self.carrying):
+            turn = dynamics.sole_rotation[foot].T / self._weight
+            force, moment = slice(6 * i, 6 * i + 3), slice(6 * i + 3, 6 * i + 6)
+            to_centers[force, force] = to_centers[moment, moment] = turn
+            to_centers[moment, force] = self._to_center[i] @ turn
+        local = wrench.then(to_centers)
+        return Affine(local.matrix, local.offset - self._even)
+
+    def _cones(self, centered: Affine, bounds: StanceBounds) -> tuple[np.ndarray, np.ndarray]:
         """Rows (17 C, n) and bounds (17 C,) of the admissible wrenches, in parts of the weight."""
-        count = ROWS * len(self.carrying)
-        matrix, limit = np.empty((count, wrench.matrix.shape[1])), np.empty(count)
-        for i, (foot, to_center) in enumerate(zip(self.carrying, self._to_centers(dynamics), strict=True)):
+        if self._known_cone[0] != bounds:
+            self._known_cone = bounds, *self._cone(bounds)
+        _, cone, limit = self._known_cone
+        return cone @ centered.matrix, limit - cone @ (centered.offset + self._even)
+
+    def _cone(self, bounds: StanceBounds) -> tuple[np.ndarray, np.ndarray]:
+        """The cones of all carrying feet about their centres (17 C, 6 C) and (17 C,)."""
+        count = len(self.carrying)
+        matrix, limit = np.zeros((ROWS * count, 6 * count)), np.zeros(ROWS * count)
+        for i, foot in enumerate(self.carrying):
             sole = self.robot.soles[foot]
             lower, upper = inset_rectangle(sole.lower, sole.upper, bounds.border)
             x_half, y_half = ((upper - lower) / 2.0).tolist()
-            cone, bound = wrench_cone(x_half, y_half, bounds.friction, bounds.least_force * self._weight)
-            rows, at = slice(ROWS * i, ROWS * (i + 1)), slice(6 * i, 6 * i + 6)
-            local = cone @ to_center
-            matrix[rows], limit[rows] = local @ wrench.matrix[at], bound - local @ wrench.offset[at]
-        return matrix / self._weight, limit / self._weight
-
-    def _to_centers(self, dynamics: Dynamics) -> list[np.ndarray]:
-        """From wrenches about the sole origins, world axes, to those about the soles' centres, sole axes."""
-        maps = []
-        for foot, center in zip(self.carrying, self._centers, strict=True):
-            turn = np.zeros((6, 6))
-            turn[:3, :3] = turn[3:, 3:] = dynamics.sole_rotation[foot].T
-            maps.append(wrench_shift_map(np.zeros(3), np.append(center, 0.0)) @ turn)
-        return maps
+            rows = slice(ROWS * i, ROWS * (i + 1))
+            matrix[rows, 6 * i : 6 * i + 6], limit[rows] = wrench_cone(
+                x_half, y_half, bounds.friction, bounds.least_force
+            )
+        return matrix, limit
 
 
 def joint_bounds(robot: RobotModel, dynamics: Dynamics, rate: float) -> tuple[np.ndarray, np.ndarray]:

@@ -26,7 +26,7 @@ from momentum_lab.control.outputs import (
 )
 from momentum_lab.control.qp import solve
 from momentum_lab.control.regulated import RegulatedMomentum
-from momentum_lab.control.stance_motion import StanceMotion, stance_motion
+from momentum_lab.control.stance_motion import Affine, StanceMotion, stance_motion
 from momentum_lab.control.stance_output import stance_output
 from momentum_lab.control.stance_program import StanceBounds, StanceProgram
 from momentum_lab.errors import SolverError
@@ -137,9 +137,11 @@ class WholeBodyQP:
         motion = stance_motion(dynamics, reference, carrying, gains.contact_damping)
         program = self._program(reference.stance, carrying)
         outputs = self._outputs(dynamics, reference, desired, gains, priority)
-        hessian, gradient = self._objective(dynamics, outputs, motion, program, gains)
+        uneven = program.centered(dynamics, motion.wrench)
+        hessian, gradient = self._objective(outputs, motion, uneven, gains)
+        problem = program.problem(hessian, gradient, dynamics, motion, uneven, _bounds(gains))
         try:
-            x = solve(program.problem(hessian, gradient, dynamics, motion, _bounds(gains))).x
+            x = solve(problem).x
         except SolverError as error:
             return hold(self.robot, dynamics, reference, str(error), memory)
         return stance_output(self.robot, dynamics, motion, x, carrying, desired, slack={})
@@ -181,17 +183,11 @@ class WholeBodyQP:
         ]
 
     def _objective(
-        self,
-        dynamics: Dynamics,
-        outputs: list[Output],
-        motion: StanceMotion,
-        program: StanceProgram,
-        gains: WholeBodyGains,
+        self, outputs: list[Output], motion: StanceMotion, uneven: Affine, gains: WholeBodyGains
     ) -> tuple[np.ndarray, np.ndarray]:
         hessian, gradient = least_squares(outputs, motion.acceleration)
         joints = np.arange(self.robot.na)
         hessian[joints, joints] += _RIDGE
-        uneven = program.centered(dynamics, motion.wrench)
         hessian += gains.force_weight * (uneven.matrix.T @ uneven.matrix)
         gradient += gains.force_weight * (uneven.offset @ uneven.matrix)
         return lightened(hessian, gradient, outputs)

@@ -204,8 +204,9 @@ def problem_of(controller, dynamics, reference, stance):
     outputs = controller._outputs(dynamics, reference, GAINS, 0.0)
     motion = stance_motion(dynamics, reference, stance, GAINS.contact_damping)
     program = controller._program(stance, stance)
-    hessian, gradient = controller._objective(dynamics, outputs, motion, program)
-    return program.problem(hessian, gradient, dynamics, motion, _bounds(GAINS))
+    uneven = program.centered(dynamics, motion.wrench)
+    hessian, gradient = controller._objective(outputs, motion, uneven)
+    return program.problem(hessian, gradient, dynamics, motion, uneven, _bounds(GAINS))
 
 
 @lru_cache(maxsize=8)

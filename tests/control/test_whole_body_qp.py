@@ -156,8 +156,9 @@ def test_the_answer_is_the_minimiser_by_another_solver(robot, rng, stance):
         program = controller._program(stance, stance)
         desired = controller.desired_rate(dynamics, reference, GAINS)
         outputs = controller._outputs(dynamics, reference, desired, GAINS, 0.0)
-        hessian, gradient = controller._objective(dynamics, outputs, motion, program, GAINS)
-        problem = program.problem(hessian, gradient, dynamics, motion, _bounds(GAINS))
+        uneven = program.centered(dynamics, motion.wrench)
+        hessian, gradient = controller._objective(outputs, motion, uneven, GAINS)
+        problem = program.problem(hessian, gradient, dynamics, motion, uneven, _bounds(GAINS))
         solution = solve(problem)
         assert certify(problem, solution.x, solution.multipliers).worst < 1e-6
         difference = problem.hessian @ (solution.x - solve_reference(problem))
