@@ -18,6 +18,7 @@ MIN_SECONDS = 1e-3
 MAX_SECONDS = 3600.0
 MAX_SEED = 2**32 - 1
 MAX_DISTANCE = 1000.0
+MAX_LEAN = 0.1
 ENGINES = ("pinocchio",)
 
 _WORDS = {
@@ -41,6 +42,8 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         robot: a robot of the catalog, or the path of a robot's TOML file.
         controller: a controller of the registry.
         stance: the feet the robot stands on; empty: all of them.
+        com_outside: how far outside the outer edge of its only stance foot the CoM starts, m; None: the robot
+            starts where it is to stand.
         priority: 0 keeps linear momentum, 1 keeps angular momentum.
         gains: values that differ from the controller's defaults.
         pushes: the pushes, in simulated time.
@@ -58,6 +61,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     robot: str = "talos"
     controller: str = "computed-torque"
     stance: tuple[str, ...] = ()
+    com_outside: Annotated[float, msgspec.Meta(ge=-MAX_LEAN, le=MAX_LEAN)] | None = None
     priority: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.0
     gains: dict[str, float] = {}
     pushes: tuple[Push, ...] = ()

@@ -89,8 +89,8 @@ class Session:
         self.scenario = scenario
         self.robot = robot or RobotModel.named(scenario.robot)
         self.stance = _stance(self.robot, scenario.stance)
-        self._start = _starting_state(self.robot, scenario)
-        home = self.robot.at(self._start)
+        self._start = _starting_state(self.robot, scenario, scenario.com_outside)
+        home = self.robot.at(_starting_state(self.robot, scenario, None))
         self._standing_height = float(home.com_in_world[2])
         self._goal = StandingGoal(self.robot, home, self.stance)
         friction = self.robot.spec.friction if scenario.friction is None else scenario.friction
@@ -279,9 +279,9 @@ def _stance(robot: RobotModel, names: tuple[str, ...]) -> tuple[int, ...]:
     return tuple(i for i, name in enumerate(robot.foot_names) if not names or name in names)
 
 
-def _starting_state(robot: RobotModel, scenario: Scenario) -> State:
-    """The standing posture, moved and turned to where the scenario starts."""
-    q = standing_posture(robot, scenario.stance or robot.foot_names).copy()
+def _starting_state(robot: RobotModel, scenario: Scenario, com_outside: float | None) -> State:
+    """The standing posture, or one that leans out, moved and turned to where the scenario starts."""
+    q = standing_posture(robot, scenario.stance or robot.foot_names, com_outside).copy()
     turn = pin.utils.rotate("z", math.radians(scenario.heading_deg))
     rotation = turn @ pin.Quaternion(q[3:7]).toRotationMatrix()
     q[:3] = turn @ q[:3]

@@ -131,9 +131,12 @@ def test_bad_value_is_one_line_that_names_it(words: str, message: str, capsys: O
 @pytest.mark.parametrize(
     ("words", "start"),
     [
-        ("run", "scenario: got nothing; allowed: one of one-leg, push-backward, "),
-        ("run nope", "scenario: got nope; allowed: one of one-leg, push-backward, "),
-        ("app --scenario nope", "--scenario: got nope; allowed: one of one-leg, push-backward, "),
+        ("run", "scenario: got nothing; allowed: one of one-leg, outside-the-foot, push-backward, "),
+        ("run nope", "scenario: got nope; allowed: one of one-leg, outside-the-foot, push-backward, "),
+        (
+            "app --scenario nope",
+            "--scenario: got nope; allowed: one of one-leg, outside-the-foot, push-backward, ",
+        ),
         ("app --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
         ("run stand --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
         ("run stand --robot /", "--robot: got /; allowed: one of g1, icub, "),

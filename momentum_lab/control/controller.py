@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -51,6 +52,7 @@ class ControlOutput:
         cop_admissible: CoP of the admissible wrenches (2,), m.
         failure: why the torque is the fallback torque; None when it is not.
         memory: what the controller wants to be given at the next tick.
+        slack: what the goals have to do without, by name, m/s^2 and rad/s^2; empty where a law has no slacks.
     """
 
     torque: np.ndarray
@@ -62,6 +64,7 @@ class ControlOutput:
     cop_admissible: np.ndarray
     failure: str | None
     memory: Any
+    slack: Mapping[str, float] = field(default_factory=dict)
 
 
 class Controller(Protocol):

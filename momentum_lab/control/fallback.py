@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from momentum_lab.control.controller import ControlOutput
+from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
@@ -28,6 +28,17 @@ def hold_posture(robot: RobotModel, dynamics: Dynamics, posture: np.ndarray) -> 
     stiffness = robot.effort_limit / _FULL_TORQUE_ANGLE
     state = dynamics.state
     return stiffness * (posture - state.q[7:] - _DAMPING_TIME * state.v[6:])
+
+
+def hold(
+    robot: RobotModel, dynamics: Dynamics, reference: Reference, reason: str, memory: Any
+) -> ControlOutput:
+    """The answer of a controller that has none: the posture held by joint springs, and why."""
+    return replace(
+        without_ground(robot, dynamics, memory),
+        torque=hold_posture(robot, dynamics, reference.posture),
+        failure=f"{reason}; {HOLD_IN_WORDS}",
+    )
 
 
 def limp(robot: RobotModel, dynamics: Dynamics, memory: Any) -> ControlOutput:

@@ -40,4 +40,3 @@ def follow(body: placo.RobotWrapper, state: State) -> None:
     """Put PlaCo's robot into a state."""
     body.state.q, body.state.qd = state.q, state.v
     body.update_kinematics()
-

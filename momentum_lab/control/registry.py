@@ -10,6 +10,8 @@ from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueG
 from momentum_lab.control.controller import Controller
 from momentum_lab.control.placo_wbc import PlacoWbc, PlacoWbcGains
 from momentum_lab.control.resolved_momentum import ResolvedMomentum, ResolvedMomentumGains
+from momentum_lab.control.slack_qp import SlackGains, SlackQP
+from momentum_lab.control.whole_body_qp import WholeBodyGains, WholeBodyQP
 from momentum_lab.errors import InputError
 from momentum_lab.robot.model import RobotModel
 
@@ -49,6 +51,18 @@ CONTROLLERS: dict[str, ControllerEntry] = {
         summary="The peer: soft tasks on CoM, pelvis and posture over planar contacts, in one program.",
         make=PlacoWbc,
         gains=PlacoWbcGains(),
+    ),
+    "slack-qp": ControllerEntry(
+        title="Output tasks with slacks",
+        summary="CoM, pelvis, swing foot and posture under CoP bounds, least slack first (section 5.2).",
+        make=SlackQP,
+        gains=SlackGains(),
+    ),
+    "whole-body-qp": ControllerEntry(
+        title="Whole-body QP",
+        summary="Accelerations, forces and torques in one quadratic program, momentum first.",
+        make=WholeBodyQP,
+        gains=WholeBodyGains(),
     ),
 }
 

@@ -10,6 +10,9 @@ from momentum_lab.compiled import compiled
 
 _POINTS, _POINT = "f8[:, ::1]", "f8[::1]"
 
+_SAME = 1e-9
+"""Points whose x differs by less than this are in one column, m."""
+
 _FLAT = 1e-12
 """A corner that spans less than this area with its neighbours is no corner, m^2."""
 
@@ -34,6 +37,18 @@ def sort_points(points: np.ndarray) -> None:
         points[place] = (x, y)
 
 
+@compiled(f"void({_POINTS})")
+def align_columns(points: np.ndarray) -> None:
+    """Give sorted points (N, 2) one x where it differs by rounding alone, and sort them again, in place.
+
+    Otherwise rounding would decide the order along a column, and the hull would turn back and lose a corner.
+    """
+    for i in range(1, len(points)):
+        if points[i, 0] - points[i - 1, 0] < _SAME:
+            points[i, 0] = points[i - 1, 0]
+    sort_points(points)
+
+
 @compiled(f"{_POINTS}({_POINTS})")
 def convex_hull(points: np.ndarray) -> np.ndarray:
     """Corners of the convex hull (K, 2), counter-clockwise, by a monotone chain.
@@ -45,6 +60,7 @@ def convex_hull(points: np.ndarray) -> np.ndarray:
         Every point once, at least one fewer than three where all lie on a line.
     """
     sort_points(points)
+    align_columns(points)
     count = len(points)
     if count < 2:
         return points.copy()

@@ -40,7 +40,9 @@ class _Goal:
     pelvis: np.ndarray
 
 
-def standing_posture(robot: RobotModel, stance: Sequence[str] | None = None) -> np.ndarray:
+def standing_posture(
+    robot: RobotModel, stance: Sequence[str] | None = None, com_outside: float | None = None
+) -> np.ndarray:
     """A configuration in which the robot stands on the given feet, facing along x.
 
     Soles are level at x = 0 and y = +-foot_distance / 2: those of the stance at z = 0, the others `LIFT`
@@ -50,6 +52,7 @@ def standing_posture(robot: RobotModel, stance: Sequence[str] | None = None) -> 
     Args:
         robot: the robot.
         stance: names of the feet to stand on; all of them unless given.
+        com_outside: how far outside the outer edge of the only stance foot the CoM is instead, m (Fig. 9).
 
     Returns:
         q (nq,), m and rad, in Pinocchio's order; the same arguments give the same bits.
@@ -60,7 +63,9 @@ def standing_posture(robot: RobotModel, stance: Sequence[str] | None = None) -> 
     feet = tuple(robot.foot_names if stance is None else stance)
     if not feet or not set(feet) <= set(robot.foot_names):
         raise RobotError("stance", ", ".join(feet), f"one or more of {', '.join(robot.foot_names)}")
-    goal = _goal(robot, feet)
+    if com_outside is not None and len(feet) != 1:
+        raise RobotError("stance of a robot with its CoM outside", ", ".join(feet), "a single foot")
+    goal = _goal(robot, feet, com_outside)
     q = _solve(robot, feet, goal)
     _verify(robot, feet, goal, q)
     return q
@@ -82,7 +87,7 @@ def _home_angles(robot: RobotModel) -> np.ndarray:
     return angles
 
 
-def _goal(robot: RobotModel, feet: Sequence[str]) -> _Goal:
+def _goal(robot: RobotModel, feet: Sequence[str], com_outside: float | None) -> _Goal:
     """Targets of the stance; with all joints at zero the toes tell which way the robot faces."""
     data = _kinematics(robot, pin.neutral(robot.model))
     toes = data.oMf[robot.soles[0].frame].rotation[:, 0]
@@ -94,7 +99,12 @@ def _goal(robot: RobotModel, feet: Sequence[str]) -> _Goal:
         place = np.array([0.0, 0.5 * side * robot.spec.home.foot_distance, height])
         soles[sole.name] = pin.SE3(np.eye(3), place)
     centres = [soles[sole.name].act(sole.corners.mean(axis=0)) for sole in robot.soles if sole.name in feet]
-    return _Goal(turn, soles, np.mean(centres, axis=0), turn @ data.oMf[robot.pelvis].rotation)
+    com = np.mean(centres, axis=0)
+    if com_outside is not None:
+        (sole,) = (sole for sole in robot.soles if sole.name in feet)
+        half_width = 0.5 * (sole.upper[1] - sole.lower[1])
+        com[1] += np.sign(soles[sole.name].translation[1]) * (half_width + com_outside)
+    return _Goal(turn, soles, com, turn @ data.oMf[robot.pelvis].rotation)
 
 
 def _solve(robot: RobotModel, feet: Sequence[str], goal: _Goal) -> np.ndarray:
@@ -162,7 +172,7 @@ def _verify(robot: RobotModel, feet: Sequence[str], goal: _Goal, q: np.ndarray) 
             faults.append(f"{sole.name} sole {angle:.4f} rad from level")
     sway = np.linalg.norm(pin.centerOfMass(robot.model, data, q)[:2] - goal.com[:2])
     if sway > _DISTANCE_ERROR:
-        faults.append(f"centre of mass {1e3 * sway:.2f} mm from above the support's middle")
+        faults.append(f"centre of mass {1e3 * sway:.2f} mm from its place above the support")
     outside = (q[7:] < robot.position_lower) | (q[7:] > robot.position_upper)
     faults += [f"{robot.joint_names[i]} outside its limits" for i in np.flatnonzero(outside)]
     if faults:

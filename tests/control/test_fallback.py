@@ -9,7 +9,7 @@ import pytest
 
 from momentum_lab.control import computed_torque
 from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueGains
-from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture, limp
+from momentum_lab.control.fallback import HOLD_IN_WORDS, hold, hold_posture, limp
 from momentum_lab.errors import SolverError
 from tests.conftest import assert_close
 from tests.control.situations import goal, home, swaying
@@ -84,3 +84,13 @@ def test_whichever_program_fails_its_reason_is_passed_on(robot, step, monkeypatc
     )
     assert output.failure == f"cannot be met: the thing; {HOLD_IN_WORDS}"
     assert_close(output.memory.angle, dynamics.state.q[7:], 0.0)
+
+
+def test_a_controller_without_an_answer_holds_the_posture_and_says_why(robot, rng):
+    dynamics, memory = swaying(robot, rng), object()
+    reference = goal(robot, dynamics)
+    output = hold(robot, dynamics, reference, "the sky is falling", memory)
+    assert_close(output.torque, hold_posture(robot, dynamics, reference.posture), 0.0)
+    assert output.failure == f"the sky is falling; {HOLD_IN_WORDS}"
+    assert output.memory is memory
+    assert not output.foot_wrench_admissible.any()

@@ -53,6 +53,15 @@ def test_polygon_ignores_the_rounding_of_points_that_coincide(rng):
     assert_close(support_polygon(noisy), SQUARE, 1e-15)
 
 
+def test_two_feet_that_are_aligned_but_for_rounding_keep_all_their_corners(rng):
+    """Corners of both heels have the same x, as far as a machine can tell."""
+    feet = np.array([[x, y + s] for s in (0.085, -0.085) for x in (-0.1, 0.091) for y in (-0.06, 0.06)])
+    for _ in range(200):
+        polygon = support_polygon(feet + rng.normal(scale=1e-16, size=feet.shape))
+        assert len(polygon) == 4
+        assert support_margin(np.array([-0.0045, 0.0]), polygon) == pytest.approx(0.0955, abs=1e-9)
+
+
 def test_polygon_of_degenerate_contacts():
     assert support_polygon(np.zeros((0, 3))).shape == (0, 2)
     assert_close(support_polygon(np.array([[0.3, 0.1, 0.0]] * 4)), ONE_POINT, 0.0)

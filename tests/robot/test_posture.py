@@ -114,6 +114,26 @@ def test_the_pelvis_of_g1_leans_over_the_stance_foot_because_its_ankle_cannot(
     assert_close(standing(talos, ("left",)).pelvis_rotation, np.eye(3), 1e-4)
 
 
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_leaning_robot_has_its_com_outside_the_outer_edge(robot: RobotModel, side: str) -> None:
+    """Fig. 9: outside by what was asked for, the sole where it always is."""
+    foot = robot.foot_names.index(side)
+    dynamics = robot.at(State(standing_posture(robot, (side,), 0.01), np.zeros(robot.nv)))
+    upright = standing(robot, (side,))
+    outwards = np.sign(dynamics.sole_position[foot, 1])
+    corners = robot.soles[foot].corners + dynamics.sole_position[foot]
+    edge = (outwards * corners[:, 1]).max()
+    assert_close(outwards * dynamics.com_in_world[1], edge + 0.01, 1e-4)
+    assert_close(dynamics.sole_position[foot], upright.sole_position[foot], 1e-4)
+    assert_close(dynamics.sole_rotation[foot], np.eye(3), 1e-4)
+    assert_close(dynamics.com_in_world[0], upright.com_in_world[0], 1e-4)
+
+
+def test_outside_of_two_feet_is_refused(talos: RobotModel) -> None:
+    with pytest.raises(RobotError, match="CoM outside: got left, right; allowed: a single foot"):
+        standing_posture(talos, None, 0.01)
+
+
 def test_standing_needs_no_more_torque_than_the_motors_have(
     any_robot: RobotModel, stance: tuple[str, ...]
 ) -> None:
