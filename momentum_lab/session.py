@@ -171,14 +171,18 @@ class Session:
         return torque if self._handover is None else self._handover.applied(torque)
 
     def _record(self, dynamics: Dynamics, output: ControlOutput, step: Step) -> Sample:
-        row = self.recording.next_row()
-        observe(
-            row,
-            self.recording.slices,
-            Tick(self.robot, self.time, self.scenario.timestep, dynamics, output, step, self._ground.height),
+        tick = Tick(
+            self.robot,
+            self.time,
+            self.scenario.timestep,
+            dynamics,
+            output,
+            step,
+            self._ground.height,
+            self.priority,
+            self.fall is not None,
         )
-        row[self.recording.slices["priority"]] = self.priority
-        row[self.recording.slices["fallen"]] = self.fall is not None
+        observe(self.recording.next_row(), tick)
         return self.recording.latest
 
     def _advance(self, output: ControlOutput, step: Step) -> None:

@@ -152,7 +152,7 @@ def test_a_rate_that_does_not_explain_the_motion_has_a_residual(robot, session):
     step = Step(after, idle, idle, carried, np.zeros(6), np.zeros(6), rate, 0.0)
     layout = Layout.of(robot)
     row = np.zeros(layout.width)
-    observe(row, layout.slices, Tick(robot, 0.3, 1e-3, dynamics, limp(robot, dynamics, None), step, 0.0))
+    observe(row, Tick(robot, 0.3, 1e-3, dynamics, limp(robot, dynamics, None), step, 0.0, 0.0, False))
     assert row[layout.slices["equation_residual"]][0] == pytest.approx(0.01, rel=1e-6)
 
 

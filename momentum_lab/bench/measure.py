@@ -1,18 +1,23 @@
-"""The measurement: stages, whole ticks and PlaCo take turns, so that all see the same machine."""
+"""The measurement: stages, whole ticks and the peer take turns, so that all see the same machine."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from time import perf_counter
+from typing import Any
 
 import msgspec
 import numpy as np
+from threadpoolctl import threadpool_limits
 
-from momentum_lab.bench.placo_peer import PlacoPeer
+from momentum_lab.bench.peer import PeerLoop, PlacoPeer
+from momentum_lab.bench.profile import calls_per_tick
 from momentum_lab.bench.stages import STAGES, StagedTick
+from momentum_lab.errors import LabError
 from momentum_lab.events import ApplyPush
 from momentum_lab.physics.push import Push
 from momentum_lab.robot.model import RobotModel
+from momentum_lab.robot.state import State
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
 
@@ -21,7 +26,7 @@ ROBOTS = ("talos", "g1")
 _TURN = 50
 _KEPT = 1000
 _PUSH = Push(velocity_change=0.15)
-_PUSH_EVERY = 2000
+_PUSH_EVERY, _PUSH_TICKS = 2000, 100
 
 
 class Percentiles(msgspec.Struct, frozen=True):
@@ -44,6 +49,12 @@ class RobotBench(msgspec.Struct, frozen=True):
         tick: the whole `Session.tick`.
         real_time_factor: simulated time over wall time of `Session.tick`.
         placo_solve: `DynamicsSolver.solve()` of PlaCo, its kinematics already up to date.
+        calls_per_tick: calls of functions in one `Session.tick`, those written in C included.
+        peer_tick: the loop that a user would build instead, `PeerLoop.tick`; None without MuJoCo.
+        peer_placo: its controller: MuJoCo's state into PlaCo, kinematics, `DynamicsSolver.solve()`.
+        peer_mujoco: its physics: `mj_step` with four contacts under each foot.
+        tick_to_peer: median of `tick` over median of `peer_tick`.
+        missing: why there is no peer, in words.
     """
 
     robot: str
@@ -55,51 +66,101 @@ class RobotBench(msgspec.Struct, frozen=True):
     tick: Percentiles
     real_time_factor: float
     placo_solve: Percentiles
+    calls_per_tick: float
+    peer_tick: Percentiles | None = None
+    peer_placo: Percentiles | None = None
+    peer_mujoco: Percentiles | None = None
+    tick_to_peer: float | None = None
+    missing: str | None = None
 
 
 def measure(name: str, seconds: float, report: Callable[[float], None]) -> RobotBench:
-    """Measure with one robot.
+    """Measure with one robot, on one thread.
 
     Args:
         name: a robot of the catalog.
         seconds: how long, wall time, s; at least one turn is measured.
         report: is told the fraction that is done.
     """
-    robot = RobotModel.named(name)
-    scenario = Scenario("bench", robot=name)
-    staged = StagedTick(robot, scenario)
-    session = Session(scenario, robot, capacity=_KEPT)
-    peer = PlacoPeer(robot, session.state, scenario.timestep)
-    _turn(staged, session, peer)
-    turns: list[np.ndarray] = []
-    start = perf_counter()
-    while not turns or perf_counter() - start < seconds:
-        turns.append(_turn(staged, session, peer))
-        report((perf_counter() - start) / seconds)
-    times = np.concatenate(turns)
-    stages = {stage: _percentiles(times[:, i]) for i, stage in enumerate(STAGES)}
-    ticks, solves = times[:, len(STAGES)], times[:, len(STAGES) + 1]
-    return RobotBench(
-        robot=name,
-        ticks=len(times),
-        **stages,
-        tick=_percentiles(ticks),
-        real_time_factor=scenario.timestep / float(ticks.mean()),
-        placo_solve=_percentiles(solves),
-    )
+    with threadpool_limits(1):
+        field = _Field(name)
+        field.turn()
+        turns: list[np.ndarray] = []
+        start = perf_counter()
+        while not turns or perf_counter() - start < seconds:
+            turns.append(field.turn())
+            report((perf_counter() - start) / seconds)
+        return field.result(np.concatenate(turns))
 
 
-def _turn(staged: StagedTick, session: Session, peer: PlacoPeer) -> np.ndarray:
-    """Wall times of the stages, of the whole tick and of PlaCo (n, 6), s."""
-    if session.ticks % _PUSH_EVERY == 0:
-        push = _PUSH.sized_for(session.robot.mass)
-        staged.pushes = (msgspec.structs.replace(push, start=staged.time),)
-        session.post(ApplyPush(push))
-    stages = [staged.tick() for _ in range(_TURN)]
-    ticks = [_timed(session.tick) for _ in range(_TURN)]
-    peer.follow(session.state)
-    solves = [_timed(peer.solve) for _ in range(_TURN)]
-    return np.column_stack([stages, ticks, solves])
+class _Field:
+    """All that take part, side by side."""
+
+    def __init__(self, name: str) -> None:
+        robot = RobotModel.named(name)
+        scenario = Scenario("bench", robot=name)
+        self.force = _PUSH.sized_for(robot.mass)
+        self.staged = StagedTick(robot, scenario)
+        self.session = Session(scenario, robot, capacity=_KEPT)
+        self.placo = PlacoPeer(robot, self.session.state, scenario.timestep)
+        self.peer, self.missing = _peer(self.placo, self.session.state, scenario.timestep)
+        self.calls = calls_per_tick(Session(scenario, robot, capacity=_KEPT))
+
+    def turn(self) -> np.ndarray:
+        """Wall times of the stages, of the whole tick, of PlaCo and of the peer's two parts (n, 6 or 8), s."""
+        self._push()
+        stages = [self.staged.tick() for _ in range(_TURN)]
+        ticks = [_timed(self.session.tick) for _ in range(_TURN)]
+        self.placo.follow(self.session.state)
+        columns: list[Any] = [stages, ticks, [_timed(self.placo.solve) for _ in range(_TURN)]]
+        if self.peer is not None:
+            columns.append([(_timed(self.peer.control), _timed(self.peer.move)) for _ in range(_TURN)])
+        return np.column_stack(columns)
+
+    def _push(self) -> None:
+        phase = self.session.ticks % _PUSH_EVERY
+        if phase == 0:
+            self.staged.pushes = (msgspec.structs.replace(self.force, start=self.staged.time),)
+            self.session.post(ApplyPush(self.force))
+        if self.peer is not None and phase in (0, _PUSH_TICKS):
+            size = 0.0 if phase else self.force.mean_force(self.force.start, self.session.scenario.timestep)
+            self.peer.push(size * self.force.direction)
+
+    def result(self, times: np.ndarray) -> RobotBench:
+        """The percentiles of the columns of all turns."""
+        parts: dict[str, Any] = {stage: _percentiles(times[:, i]) for i, stage in enumerate(STAGES)}
+        ticks, solves = times[:, len(STAGES)], times[:, len(STAGES) + 1]
+        parts.update(_peer_result(ticks, times[:, len(STAGES) + 2 :]))
+        return RobotBench(
+            robot=self.session.robot.spec.name,
+            ticks=len(times),
+            tick=_percentiles(ticks),
+            real_time_factor=self.session.scenario.timestep / float(ticks.mean()),
+            placo_solve=_percentiles(solves),
+            calls_per_tick=self.calls,
+            missing=self.missing,
+            **parts,
+        )
+
+
+def _peer(placo: PlacoPeer, home: State, timestep: float) -> tuple[PeerLoop | None, str | None]:
+    """The peer, or what it lacks."""
+    try:
+        return PeerLoop(placo, home, timestep), None
+    except LabError as error:
+        return None, str(error)
+
+
+def _peer_result(ticks: np.ndarray, times: np.ndarray) -> dict[str, Any]:
+    if not times.size:
+        return {}
+    whole = times.sum(axis=1)
+    return {
+        "peer_tick": _percentiles(whole),
+        "peer_placo": _percentiles(times[:, 0]),
+        "peer_mujoco": _percentiles(times[:, 1]),
+        "tick_to_peer": float(np.median(ticks) / np.median(whole)),
+    }
 
 
 def _timed(call: Callable[[], object]) -> float:

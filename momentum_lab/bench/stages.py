@@ -62,9 +62,9 @@ class StagedTick:
         decided = perf_counter()
         step = self._simulator.step(dynamics, output.torque, self.pushes, self.time)
         moved = perf_counter()
-        row = self._recording.next_row()
-        tick = Tick(self.robot, self.time, self.timestep, dynamics, output, step, self._ground.height)
-        observe(row, self._recording.slices, tick)
+        height = self._ground.height
+        tick = Tick(self.robot, self.time, self.timestep, dynamics, output, step, height, 0.0, False)
+        observe(self._recording.next_row(), tick)
         recorded = perf_counter()
         self._memory, self.state = output.memory, step.state
         self._ticks += 1

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
-import pinocchio as pin
 
+from momentum_lab.control.acceleration_terms import (
+    acceleration_program,
+    standing_feet,
+)
 from momentum_lab.control.controller import Reference
 from momentum_lab.control.foot_forces import FootForces
 from momentum_lab.control.qp import QuadraticProgram, solve
@@ -51,13 +55,10 @@ class AccelerationProgram:
     def __init__(self, robot: RobotModel, stance: tuple[int, ...]) -> None:
         self.robot = robot
         self.stance = stance
-        lifted = [sole.joints for foot, sole in enumerate(robot.soles) if foot not in stance]
-        self._posture_joints = np.concatenate([robot.upper_body, *lifted])
-        self._unbounded = np.full(6, np.inf)
-        bounds = 6 + robot.na + 6 * len(stance) + robot.na
-        self._soft = np.ones(bounds, dtype=bool)
-        self._soft[:6] = False
-        self._soft[6 + robot.na : 6 + robot.na + 6 * len(stance)] = False
+        self._free_joints = _free_joints(robot, stance)
+        contact = np.zeros(6 * len(stance), dtype=bool)
+        joints = np.ones(robot.na, dtype=bool)
+        self._soft = np.concatenate([np.zeros(6, dtype=bool), joints, contact, joints])
         self._labels = _labels(robot, stance)
 
     def solve(
@@ -87,107 +88,73 @@ class AccelerationProgram:
         Raises:
             SolverError: no acceleration keeps the feet still.
         """
-        hessian, gradient = _momentum_objective(
-            self.robot.mass, dynamics, feet.momentum_rate, weights.momentum
+        robot, state = self.robot, dynamics.state
+        program = acceleration_program(
+            state.q,
+            state.v,
+            dynamics.centroidal_map,
+            feet.momentum_rate - dynamics.centroidal_bias,
+            dynamics.locked_inertia,
+            dynamics.mass_matrix,
+            dynamics.nonlinear_effects,
+            dynamics.pelvis_jacobian,
+            dynamics.pelvis_bias,
+            dynamics.pelvis_rotation,
+            reference.pelvis_rotation,
+            _indices(self.stance),
+            dynamics.sole_jacobian,
+            dynamics.sole_bias,
+            dynamics.sole_position,
+            dynamics.sole_rotation,
+            reference.sole_height,
+            feet.wrench,
+            reference.posture,
+            self._free_joints,
+            robot.position_lower,
+            robot.position_upper,
+            robot.effort_limit,
+            robot.mass,
+            weights.momentum,
+            weights.pelvis,
+            _RIDGE,
+            weights.stiffness,
+            weights.damping,
+            weights.contact_rate,
+            weights.joint_limit_rate,
+            _BEFORE_THE_STOP,
         )
-        _add_posture(hessian, gradient, dynamics, reference, self._posture_joints, weights)
-        _add_pelvis(hessian, gradient, dynamics, reference, weights)
-        hessian.flat[:: self.robot.nv + 1] += _RIDGE
-        still, target = contact_constraint(dynamics, self.stance, reference, weights.contact_rate)
-        low, high = _joint_bounds(self.robot, dynamics, weights.joint_limit_rate)
-        torque_rows, torque_offset = _torque_ratio(self.robot, dynamics, feet.wrench, self.stance)
-        problem = QuadraticProgram(
-            hessian,
-            gradient,
-            np.concatenate([still, torque_rows]),
-            np.concatenate([-self._unbounded, low, target, -1.0 - torque_offset]),
-            np.concatenate([self._unbounded, high, target, 1.0 - torque_offset]),
-            self._labels,
-            self._soft,
-        )
-        return solve(problem).x
+        return solve(QuadraticProgram(*program, self._labels, self._soft)).x
 
 
 def contact_constraint(
     dynamics: Dynamics, stance: tuple[int, ...], reference: Reference, contact_rate: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Rows J_c (6 S, nv) and values dv_c - dJ_c v (6 S,) that keep S stance feet still, flat and on the ground.
-
-    Eq. 31 with dv_c = -2 kappa J_c v - kappa^2 e. The error e holds height and tilt only: a foot that has
-    slipped stays where it is.
-    """
-    feet = list(stance)
-    jacobian = dynamics.sole_jacobian[feet]
-    target = -2.0 * contact_rate * (jacobian @ dynamics.state.v) - dynamics.sole_bias[feet]
-    pull = contact_rate**2
-    target[:, 2] -= pull * (dynamics.sole_position[feet, 2] - reference.sole_height[feet])
-    normal = dynamics.sole_rotation[feet, :, 2]
-    target[:, 3] += pull * normal[:, 1]
-    target[:, 4] -= pull * normal[:, 0]
-    return jacobian.reshape(-1, jacobian.shape[2]), target.ravel()
+    """Rows J_c (6 S, nv) and values dv_c - dJ_c v (6 S,) that keep S stance feet still: see `standing_feet`."""
+    return standing_feet(
+        _indices(stance),
+        dynamics.sole_jacobian,
+        dynamics.sole_bias,
+        dynamics.sole_position,
+        dynamics.sole_rotation,
+        reference.sole_height,
+        dynamics.state.v,
+        contact_rate,
+    )
 
 
-def _momentum_objective(
-    mass: float, dynamics: Dynamics, rate: np.ndarray, weight: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """w_b |W (dh_a - A_G a - dA_G v)|^2; W turns with the robot, so that its heading does not matter."""
-    scale = np.zeros((6, 6))
-    scale[(0, 1, 2), (0, 1, 2)] = 1.0 / mass
-    scale[3:, 3:] = np.linalg.inv(dynamics.locked_inertia)
-    scaled = scale @ dynamics.centroidal_map
-    weighted = weight * scaled.T
-    return weighted @ scaled, -weighted @ (scale @ (rate - dynamics.centroidal_bias))
+@lru_cache(maxsize=16)
+def _indices(stance: tuple[int, ...]) -> np.ndarray:
+    return np.array(stance)
 
 
-def _add_posture(
-    hessian: np.ndarray,
-    gradient: np.ndarray,
-    dynamics: Dynamics,
-    reference: Reference,
-    joints: np.ndarray,
-    weights: MotionWeights,
-) -> None:
-    """theta''_d = k (theta_0 - theta) - d theta' for the joints that do not carry."""
-    angle, speed = dynamics.state.q[7 + joints], dynamics.state.v[6 + joints]
-    wanted = weights.stiffness * (reference.posture[joints] - angle) - weights.damping * speed
-    weight = 1.0 - weights.momentum
-    hessian[6 + joints, 6 + joints] += weight
-    gradient[6 + joints] -= weight * wanted
-
-
-def _add_pelvis(
-    hessian: np.ndarray,
-    gradient: np.ndarray,
-    dynamics: Dynamics,
-    reference: Reference,
-    weights: MotionWeights,
-) -> None:
-    """omega'_d = -k log(R R_d^T) - d omega for the pelvis."""
-    jacobian = dynamics.pelvis_jacobian[3:]
-    tilt = pin.log3(dynamics.pelvis_rotation @ reference.pelvis_rotation.T)
-    spin = jacobian @ dynamics.state.v
-    wanted = -weights.stiffness * tilt - weights.damping * spin - dynamics.pelvis_bias[3:]
-    weighted = (1.0 - weights.momentum) * weights.pelvis * jacobian.T
-    hessian += weighted @ jacobian
-    gradient -= weighted @ wanted
-
-
-def _joint_bounds(robot: RobotModel, dynamics: Dynamics, rate: float) -> tuple[np.ndarray, np.ndarray]:
-    """Accelerations theta''_l, theta''_u (na,) that brake critically damped before the joint limits."""
-    angle, braking = dynamics.state.q[7:], -2.0 * rate * dynamics.state.v[6:]
-    low = rate**2 * (robot.position_lower + _BEFORE_THE_STOP - angle) + braking
-    high = rate**2 * (robot.position_upper - _BEFORE_THE_STOP - angle) + braking
-    return low, high
-
-
-def _torque_ratio(
-    robot: RobotModel, dynamics: Dynamics, wrench: np.ndarray, stance: tuple[int, ...]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Rows (na, nv) and offset (na,) of the joint torques as parts of their limits (Eq. 33)."""
-    offset = dynamics.nonlinear_effects[6:].copy()
-    for foot in stance:
-        offset -= wrench[foot] @ dynamics.sole_jacobian[foot, :, 6:]
-    return dynamics.mass_matrix[6:] / robot.effort_limit[:, None], offset / robot.effort_limit
+def _free_joints(robot: RobotModel, stance: tuple[int, ...]) -> np.ndarray:
+    """1 for joints that carry nothing (upper body, legs of lifted feet), 0 for everything else (nv,)."""
+    free = np.zeros(robot.nv)
+    free[6 + robot.upper_body] = 1.0
+    for foot, sole in enumerate(robot.soles):
+        if foot not in stance:
+            free[6 + sole.joints] = 1.0
+    return free
 
 
 def _labels(robot: RobotModel, stance: tuple[int, ...]) -> tuple[tuple[int, str], ...]:

@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from momentum_lab.compiled import compiled
 from momentum_lab.control.accelerations import AccelerationProgram, MotionWeights
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_angular_rate, desired_linear_rate
 from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture, without_ground
-from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds
+from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds, StanceFeet
 from momentum_lab.control.gains import gain
 from momentum_lab.control.priority import Compromise, compromise
 from momentum_lab.errors import SolverError
@@ -129,15 +130,23 @@ class ComputedTorque:
         carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.sole_height)
         if not carrying:
             return self._fallback(dynamics, reference, desired, "no foot is on the ground")
-        balance = self._balance(dynamics, desired, carrying, gains, priority)
+        stance = self.footing.stance_feet(dynamics, carrying, gains.safe_border)
+        balance = self._balance(dynamics, desired, stance, gains, priority)
         try:
-            feet = self._foot_forces(dynamics, balance, carrying, gains)
+            feet = self._foot_forces(stance, balance, gains)
             program = self._acceleration_program(reference.stance)
             acceleration = program.solve(dynamics, feet, reference, _weights(gains))
         except SolverError as error:
             return self._fallback(dynamics, reference, desired, str(error))
-        torque = self._inverse_dynamics(dynamics, acceleration, feet.wrench, carrying)
-        torque += _feedback(dynamics, memory, gains)
+        torque = inverse_dynamics(
+            dynamics.mass_matrix,
+            dynamics.nonlinear_effects,
+            dynamics.sole_jacobian,
+            acceleration,
+            feet.wrench,
+        )
+        if gains.feedback_stiffness or gains.feedback_damping:
+            torque += _feedback(dynamics, memory, gains)
         return ControlOutput(
             torque=torque,
             acceleration=acceleration,
@@ -145,7 +154,7 @@ class ComputedTorque:
             momentum_rate_admissible=feet.momentum_rate,
             foot_wrench_admissible=feet.wrench,
             cop_desired=balance.cop_desired,
-            cop_admissible=self._cop(dynamics, carrying, feet),
+            cop_admissible=self._cop(dynamics, stance, feet),
             failure=None,
             memory=self._joint_command(dynamics, acceleration, memory),
         )
@@ -164,33 +173,35 @@ class ComputedTorque:
         self,
         dynamics: Dynamics,
         desired: np.ndarray,
-        stance: tuple[int, ...],
+        stance: StanceFeet,
         gains: ComputedTorqueGains,
         priority: float,
     ) -> Compromise:
         """The net force and angular rate to ask the ground for (section 5.1.2)."""
-        polygon = self.footing.safe_polygon(dynamics, stance, gains.safe_border)
-        height = float(dynamics.sole_position[list(stance), 2].mean())
         return compromise(
-            desired, dynamics.com_in_world, self.robot.mass, polygon, height, gains.friction, priority
+            desired,
+            dynamics.com_in_world,
+            self.robot.mass,
+            stance.safe_polygon,
+            stance.height,
+            gains.friction,
+            priority,
         )
 
-    def _foot_forces(
-        self, dynamics: Dynamics, balance: Compromise, stance: tuple[int, ...], gains: ComputedTorqueGains
-    ) -> FootForces:
+    def _foot_forces(self, stance: StanceFeet, balance: Compromise, gains: ComputedTorqueGains) -> FootForces:
         """Step 1: admissible wrenches of the feet."""
         bounds = ForceBounds(
             friction=gains.friction,
             normal_moment=_YAW_LEVER * gains.friction,
             least_force=gains.least_foot_force * self.robot.mass * GRAVITY,
         )
-        feet = self.footing.stance_feet(dynamics, stance, gains.safe_border)
-        return self.footing.share(feet, balance.force, balance.angular_rate, bounds)
+        return self.footing.share(stance, balance.force, balance.angular_rate, bounds)
 
-    def _cop(self, dynamics: Dynamics, stance: tuple[int, ...], feet: FootForces) -> np.ndarray:
+    def _cop(self, dynamics: Dynamics, stance: StanceFeet, feet: FootForces) -> np.ndarray:
         """CoP of the admissible wrenches (2,), m (Eq. 21)."""
-        height = float(dynamics.sole_position[list(stance), 2].mean())
-        return cop_from_momentum_rate(feet.momentum_rate, dynamics.com_in_world, self.robot.mass, height)
+        return cop_from_momentum_rate(
+            feet.momentum_rate, dynamics.com_in_world, self.robot.mass, stance.height
+        )
 
     def _acceleration_program(self, stance: tuple[int, ...]) -> AccelerationProgram:
         """Step 2 for the feet that carry."""
@@ -198,23 +209,20 @@ class ComputedTorque:
             self._programs[stance] = AccelerationProgram(self.robot, stance)
         return self._programs[stance]
 
-    def _inverse_dynamics(
-        self, dynamics: Dynamics, acceleration: np.ndarray, wrench: np.ndarray, stance: tuple[int, ...]
-    ) -> np.ndarray:
-        """Step 3: joint torques (na,), tau_s = H_s a + C_s v + tau_g,s - J_c,s^T f_c (Eq. 33)."""
-        torque = dynamics.mass_matrix[6:] @ acceleration + dynamics.nonlinear_effects[6:]
-        for foot in stance:
-            torque -= wrench[foot] @ dynamics.sole_jacobian[foot, :, 6:]
-        return torque
-
     def _joint_command(
         self, dynamics: Dynamics, acceleration: np.ndarray, memory: JointCommand
     ) -> JointCommand:
         """Integrate accelerations to theta* and its rate, slowly forgetting what did not come true."""
-        dt, forget = self.timestep, self.timestep / _FORGETTING_TIME
         state = dynamics.state
-        rate = memory.rate + dt * acceleration[6:] + forget * (state.v[6:] - memory.rate)
-        angle = memory.angle + dt * rate + forget * (state.q[7:] - memory.angle)
+        angle, rate = integrated(
+            memory.angle,
+            memory.rate,
+            acceleration,
+            state.q,
+            state.v,
+            self.timestep,
+            self.timestep / _FORGETTING_TIME,
+        )
         return JointCommand(angle, rate)
 
     def _fallback(
@@ -228,6 +236,54 @@ class ComputedTorque:
             momentum_rate_desired=desired,
             failure=f"{reason}; {HOLD_IN_WORDS}",
         )
+
+
+@compiled("f8[::1](f8[:, ::1], f8[::1], f8[:, :, ::1], f8[::1], f8[:, ::1])")
+def inverse_dynamics(
+    mass_matrix: np.ndarray,
+    nonlinear_effects: np.ndarray,
+    sole_jacobian: np.ndarray,
+    acceleration: np.ndarray,
+    wrench: np.ndarray,
+) -> np.ndarray:
+    """Step 3: joint torques (na,), tau_s = H_s a + C_s v + tau_g,s - J_c,s^T f_c, N m (Eq. 33).
+
+    Args:
+        mass_matrix: H (nv, nv).
+        nonlinear_effects: C v + tau_g (nv,), N m.
+        sole_jacobian: J_c of all soles (F, 6, nv).
+        acceleration: a (nv,).
+        wrench: f_c on all soles about their origins, zero for feet that do not carry (F, 6), N and N m.
+    """
+    torque = mass_matrix[6:] @ acceleration + nonlinear_effects[6:]
+    for foot in range(len(wrench)):
+        torque -= wrench[foot] @ sole_jacobian[foot][:, 6:].copy()
+    return torque
+
+
+@compiled("UniTuple(f8[::1], 2)(f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], f8, f8)")
+def integrated(
+    angle: np.ndarray,
+    rate: np.ndarray,
+    acceleration: np.ndarray,
+    q: np.ndarray,
+    v: np.ndarray,
+    timestep: float,
+    forget: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """theta* and its rate (na,) a step later, slowly forgetting what did not come true (Eq. 36).
+
+    Args:
+        angle: theta* (na,), rad.
+        rate: its time derivative (na,), rad/s.
+        acceleration: a (nv,).
+        q: the robot's configuration (nq,).
+        v: its velocity (nv,).
+        timestep: dt, s.
+        forget: the part of the difference to the robot that is forgotten.
+    """
+    new_rate = rate + timestep * acceleration[6:] + forget * (v[6:] - rate)
+    return angle + timestep * new_rate + forget * (q[7:] - angle), new_rate
 
 
 def _weights(gains: ComputedTorqueGains) -> MotionWeights:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import pinocchio as pin
 
+from momentum_lab.compiled import compiled
 from momentum_lab.control.controller import Reference
+from momentum_lab.robot.rotation import rotation_error
 from momentum_lab.robot.state import Dynamics
 
 
@@ -26,9 +27,14 @@ def desired_linear_rate(
     Returns:
         The rate (3,), N.
     """
-    return mass * (
-        damping * (reference.com_velocity - dynamics.com_velocity)
-        + stiffness * (reference.com - dynamics.com_in_world)
+    return _linear_rate(
+        mass,
+        reference.com_velocity,
+        dynamics.com_velocity,
+        reference.com,
+        dynamics.com_in_world,
+        damping,
+        stiffness,
     )
 
 
@@ -50,7 +56,43 @@ def desired_angular_rate(
     Returns:
         The rate (3,), N m.
     """
-    tilt = pin.log3(dynamics.pelvis_rotation @ reference.pelvis_rotation.T)
-    return damping * (reference.angular_momentum - dynamics.momentum[3:]) - pelvis_stiffness * (
-        dynamics.locked_inertia @ tilt
+    return _angular_rate(
+        dynamics.momentum,
+        reference.angular_momentum,
+        dynamics.locked_inertia,
+        dynamics.pelvis_rotation,
+        reference.pelvis_rotation,
+        damping,
+        pelvis_stiffness,
     )
+
+
+@compiled("f8[::1](f8, f8[::1], f8[::1], f8[::1], f8[::1], f8, f8)")
+def _linear_rate(
+    mass: float,
+    desired_velocity: np.ndarray,
+    velocity: np.ndarray,
+    desired: np.ndarray,
+    com: np.ndarray,
+    damping: float,
+    stiffness: float,
+) -> np.ndarray:
+    return mass * (damping * (desired_velocity - velocity) + stiffness * (desired - com))
+
+
+@compiled("f8[::1](f8[::1], f8[::1], f8[:, :], f8[:, :], f8[:, :], f8, f8)")
+def _angular_rate(
+    momentum: np.ndarray,
+    desired: np.ndarray,
+    locked_inertia: np.ndarray,
+    pelvis: np.ndarray,
+    desired_pelvis: np.ndarray,
+    damping: float,
+    stiffness: float,
+) -> np.ndarray:
+    tilt = rotation_error(pelvis, desired_pelvis)
+    rate = damping * (desired - momentum[3:])
+    for i in range(3):
+        for k in range(3):
+            rate[i] -= stiffness * locked_inertia[i, k] * tilt[k]
+    return rate

@@ -8,8 +8,8 @@ import numpy as np
 import placo
 
 from momentum_lab.robot.model import RobotModel, Sole
-from momentum_lab.robot.posture import _bare_urdf
 from momentum_lab.robot.state import State
+from momentum_lab.robot.urdf import add_fixed_link, bare_urdf
 
 # The same names are given to no link of any robot.
 _MIDDLE = "{}_sole_middle"
@@ -27,9 +27,9 @@ def middle_of(sole: Sole) -> np.ndarray:
 
 def placo_body(robot: RobotModel) -> placo.RobotWrapper:
     """The robot in PlaCo; joints, masses, rotor inertias, limits and the order of q and v are those of `robot`."""
-    root = ET.fromstring(_bare_urdf(robot))
+    root = bare_urdf(robot.urdf, robot.spec.feet)
     for sole in robot.soles:
-        _weld(root, robot.spec.feet[sole.name].frame, middle_frame(sole), middle_of(sole))
+        add_fixed_link(root, middle_frame(sole), robot.spec.feet[sole.name].frame, middle_of(sole).tolist())
     urdf = ET.tostring(root, encoding="unicode")
     body = placo.RobotWrapper(str(robot.urdf), placo.Flags.ignore_collisions, urdf)
     body.model.armature = robot.model.armature
@@ -40,11 +40,3 @@ def follow(body: placo.RobotWrapper, state: State) -> None:
     """Put PlaCo's robot into a state."""
     body.state.q, body.state.qd = state.q, state.v
     body.update_kinematics()
-
-
-def _weld(root: ET.Element, parent: str, name: str, offset: np.ndarray) -> None:
-    ET.SubElement(root, "link", name=name)
-    joint = ET.SubElement(root, "joint", name=f"{name}_weld", type="fixed")
-    ET.SubElement(joint, "parent", link=parent)
-    ET.SubElement(joint, "child", link=name)
-    ET.SubElement(joint, "origin", xyz=" ".join(map(str, offset.tolist())))

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from momentum_lab.momentum.ground import GRAVITY, cop_from_momentum_rate, ground_reaction_force
-from momentum_lab.momentum.support import (
-    clamp_tangential_force,
-    nearest_in_polygon,
-    project_on_friction_cone,
-)
+from momentum_lab.compiled import compiled
+from momentum_lab.momentum.ground import GRAVITY, cop_coordinates, ground_reaction_force
+from momentum_lab.momentum.polygon import closest_in_polygon
+from momentum_lab.momentum.support import clamp_tangential_force, project_on_friction_cone
 
 # The ground always carries at least this part of the weight, so that a CoP exists.
 _LEAST_WEIGHT = 0.1
@@ -66,26 +64,38 @@ def compromise(
     Returns:
         The compromise; both desired rates themselves when they are admissible.
     """
-    force = _within_cone(ground_reaction_force(desired_rate[:3], mass), friction, mass)
-    achievable = np.concatenate([force, desired_rate[3:]])
-    achievable[2] -= mass * GRAVITY
-    cop_desired = cop_from_momentum_rate(achievable, com_in_world, mass, ground_height)
-    cop = nearest_in_polygon(cop_desired, polygon)
-    rx, ry, rz = com_in_world.tolist()
-    px, py = cop.tolist()
-    height = rz - ground_height
-    if priority > 0.0:
-        k_x, k_y = desired_rate[3:5].tolist()
-        fz = float(force[2])
-        tilted = np.array([((rx - px) * fz - k_y) / height, ((ry - py) * fz + k_x) / height, fz])
-        force = (1.0 - priority) * force + priority * clamp_tangential_force(tilted, friction)
-    fx, fy, fz = force.tolist()
-    dx, dy = px - rx, py - ry
-    angular_rate = np.array([dy * fz + height * fy, -height * fx - dx * fz, desired_rate[5]])
-    return Compromise(force, angular_rate, cop_desired, cop)
+    return Compromise(
+        *_compromise(desired_rate, com_in_world, mass, polygon, ground_height, friction, priority)
+    )
 
 
+@compiled("f8[::1](f8[::1], f8, f8)")
 def _within_cone(force: np.ndarray, friction: float, mass: float) -> np.ndarray:
     projected = project_on_friction_cone(force, friction).copy()
     projected[2] = max(projected[2], _LEAST_WEIGHT * mass * GRAVITY)
     return projected
+
+
+@compiled("UniTuple(f8[::1], 4)(f8[::1], f8[::1], f8, f8[:, ::1], f8, f8, f8)")
+def _compromise(
+    desired_rate: np.ndarray,
+    com: np.ndarray,
+    mass: float,
+    polygon: np.ndarray,
+    ground_height: float,
+    friction: float,
+    priority: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    force = _within_cone(ground_reaction_force(desired_rate[:3], mass), friction, mass)
+    about_com = np.concatenate((force, desired_rate[3:]))
+    cop_desired = np.array(cop_coordinates(about_com, com, ground_height))
+    cop = closest_in_polygon(cop_desired, polygon)
+    dx, dy, height = cop[0] - com[0], cop[1] - com[1], com[2] - ground_height
+    k_x, k_y, k_z = desired_rate[3:]
+    if priority > 0.0:
+        fz = force[2]
+        tilted = np.array([-(dx * fz + k_y) / height, (k_x - dy * fz) / height, fz])
+        force = (1.0 - priority) * force + priority * clamp_tangential_force(tilted, friction)
+    fx, fy, fz = force
+    angular_rate = np.array([dy * fz + height * fy, -height * fx - dx * fz, k_z])
+    return force, angular_rate, cop_desired, cop

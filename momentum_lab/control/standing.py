@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from momentum_lab.compiled import compiled
 from momentum_lab.control.controller import Reference
 from momentum_lab.momentum.directions import ALL, Directions
 from momentum_lab.robot.model import RobotModel
@@ -31,39 +32,58 @@ class StandingGoal:
         self.stance = stance
         self.controlled = controlled
         self.posture = home.state.q[7:].copy()
-        self._centers = [np.append((sole.lower + sole.upper) / 2.0, 0.0) for sole in robot.soles]
-        self._height = home.com_in_world[2] - self._stance_center(home)[2]
-        self._pelvis = _about_vertical(-self._heading(home)) @ home.pelvis_rotation
+        self._centers = np.array([np.append((sole.lower + sole.upper) / 2.0, 0.0) for sole in robot.soles])
+        self._share = np.array([(foot in stance) / len(stance) for foot in range(len(robot.soles))])
+        center, heading = self._place(home)
+        self._height = home.com_in_world[2] - center[2]
+        self._pelvis = turned_about_vertical(-heading, np.ascontiguousarray(home.pelvis_rotation))
         self._still = np.zeros(3)
+        self._level = np.zeros(len(robot.soles))
 
     def reference(self, dynamics: Dynamics) -> Reference:
         """The goal for a state whose soles are where `dynamics` says, on level ground at height 0."""
-        com = self._stance_center(dynamics)
+        com, heading = self._place(dynamics)
         com[2] = self._height
         return Reference(
             com=com,
             com_velocity=self._still,
             angular_momentum=self._still,
             posture=self.posture,
-            pelvis_rotation=_about_vertical(self._heading(dynamics)) @ self._pelvis,
+            pelvis_rotation=turned_about_vertical(heading, self._pelvis),
             stance=self.stance,
-            sole_height=np.zeros(len(dynamics.sole_position)),
+            sole_height=self._level,
             controlled=self.controlled,
         )
 
-    def _stance_center(self, dynamics: Dynamics) -> np.ndarray:
-        """Mean of the centres of the stance soles in the world (3,), m."""
-        total = np.zeros(3)
-        for foot in self.stance:
-            total += dynamics.sole_position[foot] + dynamics.sole_rotation[foot] @ self._centers[foot]
-        return total / len(self.stance)
-
-    def _heading(self, dynamics: Dynamics) -> float:
-        """Mean direction of the stance feet about the vertical, rad."""
-        forward = dynamics.sole_rotation[list(self.stance), :, 0].sum(0)
-        return math.atan2(forward[1], forward[0])
+    def _place(self, dynamics: Dynamics) -> tuple[np.ndarray, float]:
+        return stance_place(dynamics.sole_position, dynamics.sole_rotation, self._centers, self._share)
 
 
-def _about_vertical(angle: float) -> np.ndarray:
+@compiled("Tuple((f8[::1], f8))(f8[:, ::1], f8[:, :, ::1], f8[:, ::1], f8[::1])")
+def stance_place(
+    position: np.ndarray, rotation: np.ndarray, centers: np.ndarray, share: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Where the stance feet are: mean of their soles' centres (3,), m, and mean direction about the vertical, rad.
+
+    Args:
+        position: sole origins in the world (F, 3), m.
+        rotation: axes of the soles in the world (F, 3, 3).
+        centers: middle of each sole in its frame (F, 3), m.
+        share: what each foot counts in the mean (F,).
+    """
+    center, forward = np.zeros(3), np.zeros(3)
+    for foot in range(len(share)):
+        center += share[foot] * (position[foot] + rotation[foot] @ centers[foot])
+        forward += share[foot] * rotation[foot][:, 0]
+    return center, math.atan2(forward[1], forward[0])
+
+
+@compiled("f8[:, ::1](f8, f8[:, ::1])")
+def turned_about_vertical(angle: float, rotation: np.ndarray) -> np.ndarray:
+    """R_z(angle) R: axes (3, 3) turned about the vertical of the world by an angle, rad."""
     c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    turned = np.empty((3, 3))
+    turned[0] = c * rotation[0] - s * rotation[1]
+    turned[1] = s * rotation[0] + c * rotation[1]
+    turned[2] = rotation[2]
+    return turned

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from momentum_lab.compiled import compiled
 from momentum_lab.momentum.wrench import sum_wrenches
 
 GRAVITY = 9.81
@@ -58,6 +59,7 @@ def momentum_rate_from_wrenches(
     return rate
 
 
+@compiled("f8[::1](f8[:], f8)")
 def ground_wrench_from_momentum_rate(momentum_rate: np.ndarray, mass: float) -> np.ndarray:
     """The net external wrench about the CoM, other than gravity, that a momentum rate needs.
 
@@ -75,6 +77,7 @@ def ground_wrench_from_momentum_rate(momentum_rate: np.ndarray, mass: float) -> 
     return wrench
 
 
+@compiled("f8[::1](f8[:], f8)")
 def ground_reaction_force(linear_momentum_rate: np.ndarray, mass: float) -> np.ndarray:
     """The force the ground has to give for a rate of linear momentum.
 
@@ -87,7 +90,7 @@ def ground_reaction_force(linear_momentum_rate: np.ndarray, mass: float) -> np.n
     Returns:
         f, world axes (3,), N.
     """
-    x, y, z = linear_momentum_rate.tolist()
+    x, y, z = linear_momentum_rate
     return np.array((x, y, z + mass * GRAVITY))
 
 
@@ -109,7 +112,7 @@ def reaction_from_momentum_rate(
         The ground reaction; CoP and normal moment are NaN without a normal force.
     """
     wrench = ground_wrench_from_momentum_rate(momentum_rate, mass)
-    x, y = _cop(wrench, com_in_world, ground_height)
+    x, y = cop_coordinates(wrench, com_in_world, ground_height)
     rx, ry, _ = com_in_world.tolist()
     fx, fy, _, _, _, nz = wrench.tolist()
     normal_moment = nz - (x - rx) * fy + (y - ry) * fx
@@ -153,7 +156,7 @@ def cop_from_wrench(wrench: np.ndarray, point: np.ndarray, ground_height: float 
     Returns:
         (p_x, p_y) in the world (2,), m; NaN without a normal force.
     """
-    return np.array(_cop(wrench, point, ground_height))
+    return np.array(cop_coordinates(wrench, point, ground_height))
 
 
 def cop_from_momentum_rate(
@@ -174,7 +177,9 @@ def cop_from_momentum_rate(
     Returns:
         (p_x, p_y) in the world (2,), m; NaN without a normal force.
     """
-    return np.array(_cop(ground_wrench_from_momentum_rate(momentum_rate, mass), com_in_world, ground_height))
+    return np.array(
+        cop_coordinates(ground_wrench_from_momentum_rate(momentum_rate, mass), com_in_world, ground_height)
+    )
 
 
 def cmp_from_force(force: np.ndarray, com_in_world: np.ndarray, ground_height: float = 0.0) -> np.ndarray:
@@ -190,12 +195,7 @@ def cmp_from_force(force: np.ndarray, com_in_world: np.ndarray, ground_height: f
     Returns:
         (s_x, s_y) in the world (2,), m; NaN without a normal force.
     """
-    fx, fy, fz = force.tolist()
-    rx, ry, rz = com_in_world.tolist()
-    if abs(fz) < NO_FORCE:
-        return np.array((math.nan, math.nan))
-    slope = (rz - ground_height) / fz
-    return np.array((rx - fx * slope, ry - fy * slope))
+    return np.array(cmp_coordinates(force, com_in_world, ground_height))
 
 
 def cmp_cop_gap(angular_momentum_rate: np.ndarray, normal_force: float) -> np.ndarray:
@@ -217,6 +217,7 @@ def cmp_cop_gap(angular_momentum_rate: np.ndarray, normal_force: float) -> np.nd
     return np.array((k_y / fz, -k_x / fz))
 
 
+@compiled("f8[::1](f8[:])")
 def sole_cop(wrench_at_sole: np.ndarray) -> np.ndarray:
     """The CoP under one foot, however it is tilted.
 
@@ -228,16 +229,29 @@ def sole_cop(wrench_at_sole: np.ndarray) -> np.ndarray:
     Returns:
         (p_x, p_y) in the sole frame (2,), m; NaN without a normal force.
     """
-    _, _, fz, nx, ny, _ = wrench_at_sole.tolist()
+    _, _, fz, nx, ny, _ = wrench_at_sole
     if abs(fz) < NO_FORCE:
         return np.array((math.nan, math.nan))
     return np.array((-ny / fz, nx / fz))
 
 
-def _cop(wrench: np.ndarray, point: np.ndarray, ground_height: float) -> tuple[float, float]:
-    fx, fy, fz, nx, ny, _ = wrench.tolist()
-    cx, cy, cz = point.tolist()
+@compiled("UniTuple(f8, 2)(f8[:], f8[:], f8)")
+def cop_coordinates(wrench: np.ndarray, point: np.ndarray, ground_height: float) -> tuple[float, float]:
+    """See `cop_from_wrench`."""
+    fx, fy, fz, nx, ny, _ = wrench
+    cx, cy, cz = point
     if abs(fz) < NO_FORCE:
         return math.nan, math.nan
     height = cz - ground_height
     return cx - (ny + height * fx) / fz, cy + (nx - height * fy) / fz
+
+
+@compiled("UniTuple(f8, 2)(f8[:], f8[:], f8)")
+def cmp_coordinates(force: np.ndarray, com_in_world: np.ndarray, ground_height: float) -> tuple[float, float]:
+    """See `cmp_from_force`."""
+    fx, fy, fz = force
+    rx, ry, rz = com_in_world
+    if abs(fz) < NO_FORCE:
+        return math.nan, math.nan
+    slope = (rz - ground_height) / fz
+    return rx - fx * slope, ry - fy * slope

@@ -11,12 +11,11 @@ import math
 
 import numpy as np
 
+from momentum_lab.compiled import compiled
 from momentum_lab.errors import InputError
+from momentum_lab.momentum.polygon import closest_in_polygon, convex_hull, depth
 
 Vertex = tuple[float, float]
-
-_FLAT = 1e-12
-"""A corner that spans less than this area with its neighbours is no corner, m^2."""
 
 
 def support_polygon(contact_points: np.ndarray) -> np.ndarray:
@@ -28,10 +27,7 @@ def support_polygon(contact_points: np.ndarray) -> np.ndarray:
     Returns:
         The corners, counter-clockwise, points on edges left out (K, 2), m.
     """
-    points = sorted({(x, y) for x, y, *_ in contact_points.tolist()})
-    if len(points) < 2:
-        return np.array(points).reshape(-1, 2)
-    return np.array(_chain(points)[:-1] + _chain(points[::-1])[:-1])
+    return convex_hull(np.array(contact_points[:, :2], dtype=float, order="C"))
 
 
 def support_margin(point: np.ndarray, polygon: np.ndarray) -> float:
@@ -45,13 +41,11 @@ def support_margin(point: np.ndarray, polygon: np.ndarray) -> float:
         Distance to the nearest edge, m: positive inside, negative outside; minus infinity if nothing
         supports, NaN if the point is.
     """
-    x, y = point.tolist()
-    vertices = polygon.tolist()
-    depth = _depth(x, y, vertices)
-    if depth > 0.0 or not vertices:
-        return depth
-    nearest_x, nearest_y = _nearest_on_boundary(x, y, vertices)
-    return -math.hypot(x - nearest_x, y - nearest_y)
+    inside = depth(point, polygon)
+    if inside > 0.0 or not len(polygon):
+        return inside
+    x, y = (point - closest_in_polygon(point, polygon)).tolist()
+    return -math.hypot(x, y)
 
 
 def nearest_in_polygon(point: np.ndarray, polygon: np.ndarray) -> np.ndarray:
@@ -64,9 +58,7 @@ def nearest_in_polygon(point: np.ndarray, polygon: np.ndarray) -> np.ndarray:
     Returns:
         The closest point, edges included (2,), m; NaN if nothing supports or the point is NaN.
     """
-    x, y = point.tolist()
-    vertices = polygon.tolist()
-    return np.array((x, y) if _depth(x, y, vertices) >= 0.0 else _nearest_on_boundary(x, y, vertices))
+    return closest_in_polygon(point, polygon)
 
 
 def distance_to_edge(point: np.ndarray, direction: np.ndarray, polygon: np.ndarray) -> float:
@@ -90,11 +82,10 @@ def distance_to_edge(point: np.ndarray, direction: np.ndarray, polygon: np.ndarr
     length = math.hypot(dx, dy)
     if not length > 0.0:
         raise InputError("direction", direction, "a vector with a length above zero")
-    vertices = polygon.tolist()
-    if not _depth(x, y, vertices) > 0.0:
+    if not depth(point, polygon) > 0.0:
         return 0.0
     reach = math.inf
-    for (ax, ay), (bx, by) in _edges(vertices):
+    for (ax, ay), (bx, by) in _edges(polygon.tolist()):
         approach = dx * (by - ay) - dy * (bx - ax)
         if approach > 0.0:
             reach = min(reach, length * ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / approach)
@@ -179,6 +170,7 @@ def in_friction_cone(force: np.ndarray, friction: float) -> bool:
     return friction_margin(force, friction) >= 0.0
 
 
+@compiled("f8[::1](f8[:], f8)")
 def project_on_friction_cone(force: np.ndarray, friction: float) -> np.ndarray:
     """The force in the friction cone that is closest to a force (chapter, section 5.1.2).
 
@@ -192,7 +184,7 @@ def project_on_friction_cone(force: np.ndarray, friction: float) -> np.ndarray:
     Returns:
         The projected force (3,), N; its normal part is larger than before when it slipped.
     """
-    fx, fy, fn = force.tolist()
+    fx, fy, fn = force
     tangential = math.hypot(fx, fy)
     if tangential <= friction * fn:
         return np.array((fx, fy, fn))
@@ -203,6 +195,7 @@ def project_on_friction_cone(force: np.ndarray, friction: float) -> np.ndarray:
     return np.array((scale * fx, scale * fy, normal))
 
 
+@compiled("f8[::1](f8[:], f8)")
 def clamp_tangential_force(force: np.ndarray, friction: float) -> np.ndarray:
     """The force in the friction cone with the same normal part, so that the vertical momentum is kept.
 
@@ -215,7 +208,7 @@ def clamp_tangential_force(force: np.ndarray, friction: float) -> np.ndarray:
     Returns:
         The clamped force (3,), N.
     """
-    fx, fy, fn = force.tolist()
+    fx, fy, fn = force
     if fn <= 0.0:
         return np.zeros(3)
     tangential, limit = math.hypot(fx, fy), friction * fn
@@ -244,45 +237,8 @@ def friction_pyramid_edges(friction: float, count: int = 4) -> np.ndarray:
     return np.column_stack((friction * np.cos(angles), friction * np.sin(angles), np.ones(count)))
 
 
-def _chain(points: list[Vertex]) -> list[Vertex]:
-    """The half of the hull on the right of the way through sorted points (monotone chain)."""
-    chain: list[Vertex] = []
-    for x, y in points:
-        while len(chain) > 1:
-            (ax, ay), (bx, by) = chain[-2], chain[-1]
-            if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > _FLAT:
-                break
-            chain.pop()
-        chain.append((x, y))
-    return chain
-
-
 def _edges(vertices: list[Vertex]) -> zip[tuple[Vertex, Vertex]]:
     return zip(vertices, vertices[1:] + vertices[:1], strict=True)
-
-
-def _depth(x: float, y: float, vertices: list[Vertex]) -> float:
-    """Distance from the nearest edge line, negative beyond one; minus infinity without an inside."""
-    if len(vertices) < 3:
-        return -math.inf
-    return min(
-        ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / math.hypot(bx - ax, by - ay)
-        for (ax, ay), (bx, by) in _edges(vertices)
-    )
-
-
-def _nearest_on_boundary(x: float, y: float, vertices: list[Vertex]) -> Vertex:
-    best, shortest = (math.nan, math.nan), math.inf
-    for (ax, ay), (bx, by) in _edges(vertices):
-        dx, dy = bx - ax, by - ay
-        length_squared = dx * dx + dy * dy
-        along = ((x - ax) * dx + (y - ay) * dy) / length_squared if length_squared > 0.0 else 0.0
-        along = min(max(along, 0.0), 1.0)
-        px, py = ax + along * dx, ay + along * dy
-        distance_squared = (x - px) ** 2 + (y - py) ** 2
-        if distance_squared < shortest:
-            best, shortest = (px, py), distance_squared
-    return best
 
 
 def _clip(vertices: list[Vertex], normal_x: float, normal_y: float, offset: float) -> list[Vertex]:

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from momentum_lab.compiled import compiled
+
 
 def _frozen(array: np.ndarray) -> np.ndarray:
     array.setflags(write=False)
@@ -33,8 +35,9 @@ def skew(vector: np.ndarray) -> np.ndarray:
     return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
 
 
+@compiled("f8[::1](f8[:], f8[:])")
 def cross(left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """The cross product a x b of two vectors; on plain numbers, ten times as fast as numpy's for any shape.
+    """The cross product a x b of two vectors; compiled, ten times as fast as numpy's for any shape.
 
     Args:
         left: a (3,), any unit.
@@ -43,11 +46,12 @@ def cross(left: np.ndarray, right: np.ndarray) -> np.ndarray:
     Returns:
         a x b (3,), the product of the units.
     """
-    ax, ay, az = left.tolist()
-    bx, by, bz = right.tolist()
+    ax, ay, az = left
+    bx, by, bz = right
     return np.array((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx))
 
 
+@compiled("f8[::1](f8[:], f8[:], f8[:])")
 def shift_wrench(wrench: np.ndarray, from_point: np.ndarray, to_point: np.ndarray) -> np.ndarray:
     """The same wrench about another point.
 
@@ -61,9 +65,9 @@ def shift_wrench(wrench: np.ndarray, from_point: np.ndarray, to_point: np.ndarra
     Returns:
         [f; n'] about to_point (6,), N and N m.
     """
-    fx, fy, fz, nx, ny, nz = wrench.tolist()
-    ax, ay, az = from_point.tolist()
-    bx, by, bz = to_point.tolist()
+    fx, fy, fz, nx, ny, nz = wrench
+    ax, ay, az = from_point
+    bx, by, bz = to_point
     dx, dy, dz = ax - bx, ay - by, az - bz
     return np.array((fx, fy, fz, nx + dy * fz - dz * fy, ny + dz * fx - dx * fz, nz + dx * fy - dy * fx))
 
@@ -85,6 +89,7 @@ def wrench_shift_map(from_point: np.ndarray, to_point: np.ndarray) -> np.ndarray
     return shift
 
 
+@compiled("f8[::1](f8[:, :], f8[:, :], f8[:])")
 def sum_wrenches(wrenches: np.ndarray, points: np.ndarray, about: np.ndarray) -> np.ndarray:
     """Several wrenches, each about its own point, as one wrench about a common point.
 
@@ -98,17 +103,12 @@ def sum_wrenches(wrenches: np.ndarray, points: np.ndarray, about: np.ndarray) ->
     Returns:
         [f; n] about b, world axes (6,), N and N m; zero when there are no wrenches.
     """
-    bx, by, bz = about.tolist()
-    force_x = force_y = force_z = moment_x = moment_y = moment_z = 0.0
-    for (fx, fy, fz, nx, ny, nz), (px, py, pz) in zip(wrenches.tolist(), points.tolist(), strict=True):
-        dx, dy, dz = px - bx, py - by, pz - bz
-        force_x += fx
-        force_y += fy
-        force_z += fz
-        moment_x += nx + dy * fz - dz * fy
-        moment_y += ny + dz * fx - dx * fz
-        moment_z += nz + dx * fy - dy * fx
-    return np.array((force_x, force_y, force_z, moment_x, moment_y, moment_z))
+    if len(points) != len(wrenches):
+        raise ValueError("every wrench needs the point it is taken about")
+    total = np.zeros(6)
+    for i in range(len(wrenches)):
+        total += shift_wrench(wrenches[i], points[i], about)
+    return total
 
 
 def wrench_in_frame_axes(wrench_in_world: np.ndarray, rotation: np.ndarray) -> np.ndarray:

@@ -57,6 +57,7 @@ class Simulator:
         self.robot = robot
         self.ground = ground
         self.timestep = timestep
+        self._least_torque = -robot.effort_limit
         self._bodies = BodyPoints(robot, timestep)
         self._push_data = robot.model.createData()
 
@@ -68,7 +69,7 @@ class Simulator:
         Raises:
             SimulationError: the state is not finite any more.
         """
-        torque = np.clip(torque, -self.robot.effort_limit, self.robot.effort_limit)
+        torque = np.minimum(np.maximum(torque, self._least_torque), self.robot.effort_limit)
         push = apply_pushes(self.robot, self._push_data, dynamics, pushes, time, self.timestep)
         stops = joint_stops(self.robot, dynamics, self.timestep)
         mass_matrix, force = _free_motion(dynamics, torque, push, stops)
@@ -84,7 +85,7 @@ class Simulator:
         q = self.robot.integrate(dynamics.state.q, self.timestep * solution.velocity)
         state = State(q, solution.velocity)
         self._bodies.follow(state)
-        feet, others = self._contact_wrenches(dynamics, touching, solution.impulse / self.timestep)
+        feet, others = self._contact_wrenches(touching, solution.frame_impulse / self.timestep)
         pushed = np.zeros(6) if push is None else push.wrench
         rate = sum_wrenches(feet, dynamics.sole_position, dynamics.com_in_world)
         rate += shift_wrench(others + pushed, _WORLD_ORIGIN, dynamics.com_in_world)
@@ -105,23 +106,17 @@ class Simulator:
             return np.zeros(self.robot.na)
         return stops.felt_torque((state.v - dynamics.state.v) / self.timestep)
 
-    def _contact_wrenches(
-        self, dynamics: Dynamics, touching: list[Touch], forces: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def _contact_wrenches(self, touching: list[Touch], wrenches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Ground on each foot about its sole (F, 6), and on all else about the world origin (6,).
 
-        `forces` (n, 3) are those on all touching points in their order, in the axes of their planes.
+        `wrenches` (B, 6) are those on the touching bodies in their order, about the origins of their frames.
         """
         feet, others = np.zeros((len(self.robot.soles), 6)), np.zeros(6)
-        first = 0
-        for touch in touching:
-            last = first + touch.gap.size
-            force = forces[first:last] @ touch.patch.rotation.T
+        for touch, wrench in zip(touching, wrenches, strict=True):
             if touch.foot is None:
-                others += _wrench_about(_WORLD_ORIGIN, touch.position, force)
+                others += shift_wrench(wrench, touch.origin, _WORLD_ORIGIN)
             else:
-                feet[touch.foot] = _wrench_about(dynamics.sole_position[touch.foot], touch.position, force)
-            first = last
+                feet[touch.foot] = wrench
         return feet, others
 
 
@@ -142,17 +137,19 @@ def _free_motion(
 
 
 def _together(touching: list[Touch], nv: int) -> Contacts:
+    """All points that may touch as one problem."""
     if not touching:
-        return Contacts(np.zeros((0, nv)), np.zeros(0), ())
+        return Contacts(np.zeros((0, nv)), np.zeros((0, 0)), np.zeros(0), ())
+    gap = np.concatenate([touch.gap for touch in touching])
+    spread = np.zeros((3 * gap.size, 6 * len(touching)))
+    friction: tuple[float, ...] = ()
+    for body, touch in enumerate(touching):
+        row = 3 * len(friction)
+        friction += (touch.patch.friction,) * touch.gap.size
+        spread[row : 3 * len(friction), 6 * body : 6 * body + 6] = touch.spread
     return Contacts(
-        jacobian=np.concatenate([touch.jacobian for touch in touching]),
-        gap=np.concatenate([touch.gap for touch in touching]),
-        friction=tuple(touch.patch.friction for touch in touching for _ in touch.gap),
+        frame_jacobian=np.concatenate([touch.frame_jacobian for touch in touching]),
+        spread=spread,
+        gap=gap,
+        friction=friction,
     )
-
-
-def _wrench_about(origin: np.ndarray, position: np.ndarray, force: np.ndarray) -> np.ndarray:
-    """Sum of forces (n, 3) at points (n, 3) about an origin (6,)."""
-    arm = position - origin
-    moment = arm[:, (1, 2, 0)] * force[:, (2, 0, 1)] - arm[:, (2, 0, 1)] * force[:, (1, 2, 0)]
-    return np.concatenate([force.sum(0), moment.sum(0)])

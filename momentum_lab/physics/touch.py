@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from momentum_lab.compiled import compiled
 from momentum_lab.physics.ground import Ground, Patch
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
@@ -23,14 +24,18 @@ class Touch:
 
     Attributes:
         position: the points in the world (n, 3), m.
-        jacobian: their velocities in the axes of the plane, normal last (3 n, nv).
+        origin: the origin of the body's frame in the world (3,), m.
+        frame_jacobian: velocity of the body's frame, world-aligned (6, nv).
+        spread: from that to the velocities of the points in the axes of the plane, normal last (3 n, 6).
         gap: their heights above the plane (n,), m.
         patch: the plane.
         foot: which foot it is; None for every other body.
     """
 
     position: np.ndarray
-    jacobian: np.ndarray
+    origin: np.ndarray
+    frame_jacobian: np.ndarray
+    spread: np.ndarray
     gap: np.ndarray
     patch: Patch
     foot: int | None = None
@@ -46,25 +51,64 @@ def sole_touches(robot: RobotModel, dynamics: Dynamics, ground: Ground) -> list[
 
 
 def _sole_touch(corners: np.ndarray, dynamics: Dynamics, foot: int, patch: Patch) -> Touch | None:
-    arms = corners @ dynamics.sole_rotation[foot].T
-    position = dynamics.sole_position[foot] + arms
-    gap = patch.gap(position)
-    if gap.min() > _MARGIN:
+    origin = dynamics.sole_position[foot]
+    position, gap, spread, lowest = placed_points(
+        corners, origin, dynamics.sole_rotation[foot], patch.origin, patch.rotation
+    )
+    if lowest > _MARGIN:
         return None
-    return Touch(position, _point_jacobian(arms, dynamics.sole_jacobian[foot], patch), gap, patch, foot)
+    return Touch(position, origin, dynamics.sole_jacobian[foot], spread, gap, patch, foot)
 
 
-def _point_jacobian(arms: np.ndarray, jacobian: np.ndarray, patch: Patch) -> np.ndarray:
-    """Velocities of points at `arms` (n, 3) from the origin of a frame with the given Jacobian (6, nv).
+@compiled("f8[:, ::1](f8[:, ::1], f8[::1], f8[:, ::1])")
+def spread_of(points: np.ndarray, origin: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """Velocities of points from that of a frame they are fixed to: R^T [1, -S(p - o)] for each (3 n, 6).
 
-    u = R^T [1, -S(arm)] J for each point, R the axes of the plane.
+    Args:
+        points: p in the world (n, 3), m.
+        origin: o of the frame in the world (3,), m.
+        axes: R, in whose axes the velocities are given (3, 3).
     """
-    count = len(arms)
-    shift = np.zeros((count, 3, 6))
-    shift[:, (0, 1, 2), (0, 1, 2)] = 1.0
-    shift[:, (0, 1, 2), (4, 5, 3)] = arms[:, (2, 0, 1)]
-    shift[:, (0, 1, 2), (5, 3, 4)] = -arms[:, (1, 2, 0)]
-    return (patch.rotation.T @ shift).reshape(3 * count, 6) @ jacobian
+    spread = np.empty((3 * len(points), 6))
+    for i in range(len(points)):
+        x, y, z = points[i] - origin
+        for k in range(3):
+            ax, ay, az = axes[0, k], axes[1, k], axes[2, k]
+            row = spread[3 * i + k]
+            row[0], row[1], row[2] = ax, ay, az
+            row[3], row[4], row[5] = az * y - ay * z, ax * z - az * x, ay * x - ax * y
+    return spread
+
+
+@compiled(
+    "Tuple((f8[:, ::1], f8[::1], f8[:, ::1], f8))(f8[:, ::1], f8[::1], f8[:, ::1], f8[::1], f8[:, ::1])"
+)
+def placed_points(
+    points: np.ndarray,
+    origin: np.ndarray,
+    rotation: np.ndarray,
+    plane_origin: np.ndarray,
+    plane_axes: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Points of a frame over a plane.
+
+    Args:
+        points: in the frame (n, 3), m.
+        origin: of the frame in the world (3,), m.
+        rotation: axes of the frame in the world (3, 3).
+        plane_origin: a point of the plane (3,), m.
+        plane_axes: axes of the plane, its normal last (3, 3).
+
+    Returns:
+        Positions in the world (n, 3), heights above the plane (n,), `spread_of` them (3 n, 6), least height, m.
+    """
+    position, gap = np.empty_like(points), np.zeros(len(points))
+    for i in range(len(points)):
+        x, y, z = points[i]
+        for k in range(3):
+            position[i, k] = origin[k] + rotation[k, 0] * x + rotation[k, 1] * y + rotation[k, 2] * z
+            gap[i] += (position[i, k] - plane_origin[k]) * plane_axes[k, 2]
+    return position, gap, spread_of(position, origin, plane_axes), gap.min()
 
 
 class BodyPoints:
@@ -113,5 +157,5 @@ class BodyPoints:
         jacobian = pin.getJointJacobian(
             self._model, self._data, joint, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
         )
-        arms = position - self._data.oMi[joint].translation
-        return Touch(position, _point_jacobian(arms, jacobian, floor), gap, floor)
+        origin = self._data.oMi[joint].translation.copy()
+        return Touch(position, origin, jacobian, spread_of(position, origin, floor.rotation), gap, floor)

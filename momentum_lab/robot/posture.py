@@ -12,7 +12,7 @@ import placo
 
 from momentum_lab.errors import RobotError
 from momentum_lab.robot.model import RobotModel
-from momentum_lab.robot.urdf import read_urdf
+from momentum_lab.robot.urdf import bare_urdf
 
 LIFT = 0.05
 """Height of a lifted sole above its place on the ground, m."""
@@ -98,7 +98,8 @@ def _goal(robot: RobotModel, feet: Sequence[str]) -> _Goal:
 
 
 def _solve(robot: RobotModel, feet: Sequence[str], goal: _Goal) -> np.ndarray:
-    body = placo.RobotWrapper(str(robot.urdf), placo.Flags.ignore_collisions, _bare_urdf(robot))
+    xml = ET.tostring(bare_urdf(robot.urdf, robot.spec.feet), encoding="unicode")
+    body = placo.RobotWrapper(str(robot.urdf), placo.Flags.ignore_collisions, xml)
     solver = placo.KinematicsSolver(body)
     _start(robot, body, solver, goal.turn)
     for sole in robot.soles:
@@ -146,22 +147,6 @@ def _start(
     solver.enable_velocity_limits(True)
     body.set_velocity_limits(_LARGEST_STEP)
     solver.dt = 1.0
-
-
-def _bare_urdf(robot: RobotModel) -> str:
-    """The URDF without its meshes, which PlaCo would look for, and with the sole frames it lacks."""
-    root = read_urdf(robot.urdf)
-    for link in root.findall("link"):
-        for shape in (*link.findall("visual"), *link.findall("collision")):
-            link.remove(shape)
-    for foot in robot.spec.feet.values():
-        if foot.parent is not None:
-            ET.SubElement(root, "link", name=foot.frame)
-            joint = ET.SubElement(root, "joint", name=f"{foot.frame}_weld", type="fixed")
-            ET.SubElement(joint, "parent", link=foot.parent)
-            ET.SubElement(joint, "child", link=foot.frame)
-            ET.SubElement(joint, "origin", xyz=" ".join(map(str, foot.offset)))
-    return ET.tostring(root, encoding="unicode")
 
 
 def _verify(robot: RobotModel, feet: Sequence[str], goal: _Goal, q: np.ndarray) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from collections.abc import Iterable
 from importlib import metadata
 from pathlib import Path
 
 import pinocchio as pin
 
 from momentum_lab.errors import RobotError
-from momentum_lab.robot.catalog import RobotSpec
+from momentum_lab.robot.catalog import FootSpec, RobotSpec
 
 _DATA = "example-robot-data"
 
@@ -59,6 +60,35 @@ def read_urdf(path: Path) -> ET.Element:
     if root.tag != "robot" or root.find("link") is None:
         raise RobotError("urdf", path, f"a URDF file whose root is <robot> with links, not <{root.tag}>")
     return root
+
+
+def bare_urdf(path: Path, feet: dict[str, FootSpec]) -> ET.Element:
+    """A URDF without its meshes, which other libraries would look for, and with the sole frames it lacks.
+
+    Args:
+        path: the URDF file.
+        feet: the feet of the robot, by name; a foot with a parent gets a link of its own.
+
+    Raises:
+        RobotError: the file is no URDF.
+    """
+    root = read_urdf(path)
+    for link in root.findall("link"):
+        for shape in (*link.findall("visual"), *link.findall("collision")):
+            link.remove(shape)
+    for foot in feet.values():
+        if foot.parent is not None:
+            add_fixed_link(root, foot.frame, foot.parent, foot.offset)
+    return root
+
+
+def add_fixed_link(root: ET.Element, name: str, parent: str, offset: Iterable[float]) -> None:
+    """Add a link without mass to a URDF, at an offset (3,) in the axes of another link, m."""
+    ET.SubElement(root, "link", name=name)
+    joint = ET.SubElement(root, "joint", name=f"{name}_weld", type="fixed")
+    ET.SubElement(joint, "parent", link=parent)
+    ET.SubElement(joint, "child", link=name)
+    ET.SubElement(joint, "origin", xyz=" ".join(map(str, offset)))
 
 
 def load_model(path: Path) -> pin.Model:

@@ -141,15 +141,14 @@ def test_what_the_ankles_need_not_do_they_do_not_do(robot):
     feet = footing.stance_feet(dynamics, BOTH, BORDER)
     for tilt, split in (((0.0, 0.0), 0.5), ((0.05, 0.0), 0.5), ((-0.04, 0.06), 0.4), ((0.0, -0.08), 0.7)):
         forces = [part * robot.mass * G * np.array([tilt[0], tilt[1], 1.0]) for part in (split, 1.0 - split)]
-        angular_rate = sum(np.cross(foot.com_to_ankle, f) for foot, f in zip(feet, forces, strict=True))
+        angular_rate = sum(np.cross(ankle, f) for ankle, f in zip(feet.com_to_ankle, forces, strict=True))
         answer = share(robot, dynamics, BOTH, sum(forces), angular_rate)
         # Less than half a millimetre of CoP under the whole weight.
         moments = ankle_moments(robot, dynamics, answer.wrench)
         assert np.abs(moments).max() < 5e-4 * robot.mass * G
-        for foot, wrench in zip(feet, answer.wrench, strict=True):
-            f = foot.rotation.T @ wrench[:3]
-            n = foot.rotation.T @ wrench[3:]
-            torque_free = foot.ankle_in_sole[:2] - foot.ankle_in_sole[2] * f[:2] / f[2]
+        for rotation, ankle, wrench in zip(feet.rotation, feet.safe.ankles, answer.wrench, strict=True):
+            f, n = wrench[:3] @ rotation, wrench[3:] @ rotation
+            torque_free = ankle[:2] - ankle[2] * f[:2] / f[2]
             assert_close([-n[1] / f[2], n[0] / f[2]], torque_free, 1e-3)
 
 
@@ -176,7 +175,7 @@ def test_the_safe_polygon_is_the_hull_of_the_safe_soles(robot, rng):
                     corner = dynamics.sole_position[foot] + dynamics.sole_rotation[foot] @ [x, y, 0.0]
                     points.append(corner[:2])
         hull = ConvexHull(points)
-        polygon = Footing(robot).safe_polygon(dynamics, stance, BORDER)
+        polygon = Footing(robot).stance_feet(dynamics, stance, BORDER).safe_polygon
         expected = np.array(points)[hull.vertices]
         assert len(polygon) == len(expected)
         start = np.argmin(np.linalg.norm(expected - polygon[0], axis=1))

@@ -99,11 +99,9 @@ def test_an_answer_is_judged_by_its_residuals_and_not_by_the_solvers_word(tamper
 
 
 def test_a_wrong_sign_of_a_multiplier_is_no_optimum(monkeypatch):
-    """min x^2 with x <= 1 and the pretended minimum x = 1, pulled there by its bound: stationary, not optimal."""
-    problem = QuadraticProgram(
-        2 * np.eye(1), np.zeros(1), np.zeros((0, 1)), np.array([-np.inf]), np.array([1.0])
-    )
-    monkeypatch.setattr(qp.daqp, "solve", lambda *_: (np.array([1.0]), 1.0, 1, {"lam": np.array([-2.0])}))
+    """min x^2 with 1 <= x <= 3 and the pretended minimum x = 3, held there by its lower bound: stationary only."""
+    problem = QuadraticProgram(2 * np.eye(1), np.zeros(1), np.zeros((0, 1)), np.array([1.0]), np.array([3.0]))
+    monkeypatch.setattr(qp.daqp, "solve", lambda *_: (np.array([3.0]), 9.0, 1, {"lam": np.array([-6.0])}))
     with pytest.raises(SolverError, match="misses optimality"):
         solve(problem)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import clarabel
 import numpy as np
 from scipy import sparse
+from scipy.linalg import block_diag
 
 from momentum_lab.physics.contact import Contacts, ContactSolution, solve_contact
 from momentum_lab.physics.ground import Ground
@@ -89,7 +90,8 @@ def problem_of(
     """The contact problem of a state under generalized forces (nv,) without contact."""
     touches = sole_touches(robot, dynamics, Ground.level(2, friction))
     contacts = Contacts(
-        jacobian=np.concatenate([touch.jacobian for touch in touches]),
+        frame_jacobian=np.concatenate([touch.frame_jacobian for touch in touches]),
+        spread=block_diag(*[touch.spread for touch in touches]),
         gap=np.concatenate([touch.gap for touch in touches]),
         friction=tuple(friction for touch in touches for _ in touch.gap),
     )
