@@ -8,15 +8,13 @@ import numpy as np
 
 from momentum_lab.compiled import compiled
 from momentum_lab.control.controller import ControlOutput
-from momentum_lab.momentum.ground import GRAVITY, NO_FORCE, cmp_from_force, cop_from_wrench
+from momentum_lab.momentum.ground import GRAVITY, cmp_coordinates, cop_coordinates, sole_cop
 from momentum_lab.momentum.pendulum import capture_point
 from momentum_lab.momentum.wrench import sum_wrenches
 from momentum_lab.physics.simulator import Step
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.rotation import quaternion_of
 from momentum_lab.robot.state import Dynamics
-
-_WORLD_ORIGIN = np.zeros(3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,14 +51,18 @@ def observe(row: np.ndarray, tick: Tick) -> None:
     |A_G a + dA_G v - dh_measured| / (m g) with a = (v+ - v) / dt (Eq. 20).
     """
     dynamics, output, step = tick.dynamics, tick.output, tick.step
-    com, height = dynamics.com_in_world, tick.ground_height
-    contact = sum_wrenches(step.foot_wrench, dynamics.sole_position, _WORLD_ORIGIN) + step.other_wrench
-    residual = equation_residual(
+    poses, cop, cmp, foot_cops, residual = derived(
+        dynamics.sole_position,
+        dynamics.sole_rotation,
+        dynamics.com_in_world,
         dynamics.centroidal_map,
         dynamics.centroidal_bias,
         dynamics.state.v,
         step.state.v,
+        step.foot_wrench,
+        step.other_wrench,
         step.momentum_rate,
+        tick.ground_height,
         tick.timestep,
     )
     quantities = (
@@ -69,7 +71,7 @@ def observe(row: np.ndarray, tick: Tick) -> None:
         dynamics.state.v,
         step.torque,
         step.stop_torque,
-        com,
+        dynamics.com_in_world,
         dynamics.com_velocity,
         dynamics.momentum,
         output.momentum_rate_desired,
@@ -77,13 +79,13 @@ def observe(row: np.ndarray, tick: Tick) -> None:
         step.momentum_rate,
         step.foot_wrench,
         output.foot_wrench_admissible,
-        sole_poses(dynamics.sole_position, dynamics.sole_rotation),
-        cop_from_wrench(contact, _WORLD_ORIGIN, height),
+        poses,
+        cop,
         output.cop_admissible,
         output.cop_desired,
-        cmp_from_force(contact[:3], com, height),
-        capture_point(com, dynamics.com_velocity, height),
-        sole_cops(step.foot_wrench, dynamics.sole_rotation),
+        cmp,
+        capture_point(dynamics.com_in_world, dynamics.com_velocity, tick.ground_height),
+        foot_cops,
         step.push_wrench,
         step.other_wrench,
         (
@@ -110,11 +112,10 @@ def sole_poses(position: np.ndarray, rotation: np.ndarray) -> np.ndarray:
 @compiled("f8[:, ::1](f8[:, ::1], f8[:, :, ::1])")
 def sole_cops(foot_wrench: np.ndarray, rotation: np.ndarray) -> np.ndarray:
     """CoP of each foot in its sole frame (F, 2), m: see `sole_cop`; wrenches (F, 6) are in world axes."""
-    cops = np.full((len(foot_wrench), 2), np.nan)
+    cops = np.empty((len(foot_wrench), 2))
     for foot in range(len(foot_wrench)):
         local = foot_wrench[foot].copy().reshape(2, 3) @ rotation[foot]
-        if abs(local[0, 2]) >= NO_FORCE:
-            cops[foot, 0], cops[foot, 1] = -local[1, 1] / local[0, 2], local[1, 0] / local[0, 2]
+        cops[foot] = sole_cop(local.ravel())
     return cops
 
 
@@ -139,3 +140,35 @@ def equation_residual(
     """
     unexplained = centroidal_map @ ((after - before) / timestep) + centroidal_bias - measured
     return float(np.abs(unexplained).max())
+
+
+@compiled(
+    "Tuple((f8[:, ::1], f8[::1], f8[::1], f8[:, ::1], f8))(f8[:, ::1], f8[:, :, ::1], f8[::1], f8[:, ::1], f8[::1],"
+    "f8[::1], f8[::1], f8[:, ::1], f8[::1], f8[::1], f8, f8)"
+)
+def derived(
+    sole_position: np.ndarray,
+    sole_rotation: np.ndarray,
+    com: np.ndarray,
+    centroidal_map: np.ndarray,
+    centroidal_bias: np.ndarray,
+    velocity: np.ndarray,
+    next_velocity: np.ndarray,
+    foot_wrench: np.ndarray,
+    other_wrench: np.ndarray,
+    momentum_rate: np.ndarray,
+    ground_height: float,
+    timestep: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float]:
+    """Sole poses (F, 7), net CoP (2,) and CMP (2,), foot CoPs (F, 2), residual of Eq. 20: all in one call.
+
+    Shapes and units of the arguments are those of `Dynamics` and `Step`.
+    """
+    contact = sum_wrenches(foot_wrench, sole_position, np.zeros(3)) + other_wrench
+    return (
+        sole_poses(sole_position, sole_rotation),
+        np.array(cop_coordinates(contact, np.zeros(3), ground_height)),
+        np.array(cmp_coordinates(contact[:3], com, ground_height)),
+        sole_cops(foot_wrench, sole_rotation),
+        equation_residual(centroidal_map, centroidal_bias, velocity, next_velocity, momentum_rate, timestep),
+    )

@@ -8,19 +8,13 @@ from functools import lru_cache
 import numpy as np
 
 from momentum_lab.control.acceleration_terms import (
-    braking_bounds,
-    least_squares,
-    momentum_and_pelvis,
-    posture,
-    stacked_bounds,
+    acceleration_program,
     standing_feet,
-    torque_ratio,
 )
 from momentum_lab.control.controller import Reference
 from momentum_lab.control.foot_forces import FootForces
 from momentum_lab.control.qp import QuadraticProgram, solve
 from momentum_lab.robot.model import RobotModel
-from momentum_lab.robot.rotation import rotation_error
 from momentum_lab.robot.state import Dynamics
 
 # Keeps the program strictly convex where neither momentum nor posture decides.
@@ -94,48 +88,42 @@ class AccelerationProgram:
         Raises:
             SolverError: no acceleration keeps the feet still.
         """
-        rows, target = self._tasks(dynamics, feet, reference, weights)
-        weight, wanted = posture(
-            dynamics.state.q,
-            dynamics.state.v,
-            reference.posture,
-            self._free_joints,
-            1.0 - weights.momentum,
-            _RIDGE,
-            weights.stiffness,
-            weights.damping,
-        )
-        hessian, gradient = least_squares(rows, target, weight, wanted)
-        still, rest = contact_constraint(dynamics, self.stance, reference, weights.contact_rate)
-        torques, offset = torque_ratio(
-            dynamics.mass_matrix,
-            dynamics.nonlinear_effects,
-            dynamics.sole_jacobian,
-            feet.wrench,
-            self.robot.effort_limit,
-        )
-        braking = joint_bounds(self.robot, dynamics, weights.joint_limit_rate)
-        bounds = stacked_bounds(still, rest, torques, offset, *braking)
-        return solve(QuadraticProgram(hessian, gradient, *bounds, self._labels, self._soft)).x
-
-    def _tasks(
-        self, dynamics: Dynamics, feet: FootForces, reference: Reference, weights: MotionWeights
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Rows (9, nv) and targets (9,) of the momentum and of the pelvis: see `momentum_and_pelvis`."""
-        return momentum_and_pelvis(
-            self.robot.mass,
-            weights.momentum,
-            (1.0 - weights.momentum) * weights.pelvis,
+        robot, state = self.robot, dynamics.state
+        program = acceleration_program(
+            state.q,
+            state.v,
             dynamics.centroidal_map,
             feet.momentum_rate - dynamics.centroidal_bias,
             dynamics.locked_inertia,
+            dynamics.mass_matrix,
+            dynamics.nonlinear_effects,
             dynamics.pelvis_jacobian,
             dynamics.pelvis_bias,
-            rotation_error(dynamics.pelvis_rotation, reference.pelvis_rotation),
-            dynamics.state.v,
+            dynamics.pelvis_rotation,
+            reference.pelvis_rotation,
+            _indices(self.stance),
+            dynamics.sole_jacobian,
+            dynamics.sole_bias,
+            dynamics.sole_position,
+            dynamics.sole_rotation,
+            reference.sole_height,
+            feet.wrench,
+            reference.posture,
+            self._free_joints,
+            robot.position_lower,
+            robot.position_upper,
+            robot.effort_limit,
+            robot.mass,
+            weights.momentum,
+            weights.pelvis,
+            _RIDGE,
             weights.stiffness,
             weights.damping,
+            weights.contact_rate,
+            weights.joint_limit_rate,
+            _BEFORE_THE_STOP,
         )
+        return solve(QuadraticProgram(*program, self._labels, self._soft)).x
 
 
 def contact_constraint(
@@ -157,18 +145,6 @@ def contact_constraint(
 @lru_cache(maxsize=16)
 def _indices(stance: tuple[int, ...]) -> np.ndarray:
     return np.array(stance)
-
-
-def joint_bounds(robot: RobotModel, dynamics: Dynamics, rate: float) -> tuple[np.ndarray, np.ndarray]:
-    """Accelerations (na,) that brake before the joint limits, a little inside them: see `braking_bounds`."""
-    return braking_bounds(
-        dynamics.state.q[7:],
-        dynamics.state.v[6:],
-        robot.position_lower,
-        robot.position_upper,
-        rate,
-        _BEFORE_THE_STOP,
-    )
 
 
 def _free_joints(robot: RobotModel, stance: tuple[int, ...]) -> np.ndarray:

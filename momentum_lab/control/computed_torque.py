@@ -188,9 +188,7 @@ class ComputedTorque:
             priority,
         )
 
-    def _foot_forces(
-        self, stance: StanceFeet, balance: Compromise, gains: ComputedTorqueGains
-    ) -> FootForces:
+    def _foot_forces(self, stance: StanceFeet, balance: Compromise, gains: ComputedTorqueGains) -> FootForces:
         """Step 1: admissible wrenches of the feet."""
         bounds = ForceBounds(
             friction=gains.friction,

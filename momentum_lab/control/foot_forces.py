@@ -18,7 +18,6 @@ from momentum_lab.control.foot_programs import (
     cop_program,
     foot_wrenches,
     force_program,
-    levers_of,
     lowest_corners,
     placed_feet,
 )
@@ -26,6 +25,7 @@ from momentum_lab.control.qp import QuadraticProgram, solve
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.polygon import convex_hull
 from momentum_lab.momentum.support import inset_rectangle
+from momentum_lab.momentum.wrench import cross
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -175,13 +175,12 @@ class Footing:
         Raises:
             SolverError: a quadratic program has no certified answer.
         """
-        levers = levers_of(feet.com_to_ankle)
         if len(feet.index) == 1:
             forces = force.reshape(1, 3)
-            sole_moments = _single_cop(feet, force, angular_rate - levers @ force, bounds)
+            sole_moments = _single_cop(feet, force, angular_rate, bounds)
         else:
-            forces = _forces(feet, levers, force, angular_rate, bounds)
-            sole_moments = _cops(feet, forces, angular_rate - levers @ forces.ravel(), bounds)
+            forces = _forces(feet, force, angular_rate, bounds)
+            sole_moments = _cops(feet, forces, angular_rate, bounds)
         return self._recombine(feet, forces, sole_moments)
 
     def _recombine(self, feet: StanceFeet, forces: np.ndarray, sole_moments: np.ndarray) -> FootForces:
@@ -212,12 +211,10 @@ class Footing:
 
 
 def _single_cop(
-    feet: StanceFeet, force: np.ndarray, ankle_moment: np.ndarray, bounds: ForceBounds
+    feet: StanceFeet, force: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds
 ) -> np.ndarray:
-    """CoP offset from the ankle and normal moment (1, 3) of the only foot: Eqs. 40, 41 in sole axes, clipped.
-
-    `ankle_moment` is what the angular rate needs about the ankle (3,).
-    """
+    """CoP offset from the ankle and normal moment (1, 3) of the only foot: Eqs. 40, 41 in sole axes, clipped."""
+    ankle_moment = angular_rate - cross(feet.com_to_ankle[0], force)
     fx, fy, fn = (force @ feet.rotation[0]).tolist()
     mx, my, mz = (ankle_moment @ feet.rotation[0]).tolist()
     (lower_x, lower_y), (upper_x, upper_y) = feet.safe.lower[0].tolist(), feet.safe.upper[0].tolist()
@@ -228,16 +225,14 @@ def _single_cop(
     return np.array([[x, y, min(max(mz - (x * fy - y * fx), -limit), limit)]])
 
 
-def _forces(
-    feet: StanceFeet, levers: np.ndarray, force: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds
-) -> np.ndarray:
-    """Stage 1: forces at the ankles (S, 3), N; `levers` (3, 3 S) make moments about the CoM of them.
+def _forces(feet: StanceFeet, force: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds) -> np.ndarray:
+    """Stage 1: forces at the ankles (S, 3), N.
 
     min |f - sum f_i|^2 + w^2 |dk/dt - sum (a_i - r_G) x f_i|^2 + e^2 sum |f_i|^2, each f_i in a pyramid inside
     its friction cone and pressing with at least the least force.
     """
     hessian, gradient, rows = force_program(
-        levers,
+        feet.com_to_ankle,
         feet.rotation,
         force,
         angular_rate,
@@ -274,19 +269,17 @@ def _labels(names: tuple[str, ...]) -> tuple[tuple[int, str], ...]:
     return ((3 * len(names), "unbounded"), *(label for labels in per_foot for label in labels))
 
 
-def _cops(
-    feet: StanceFeet, forces: np.ndarray, ankle_moment: np.ndarray, bounds: ForceBounds
-) -> np.ndarray:
+def _cops(feet: StanceFeet, forces: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds) -> np.ndarray:
     """Stage 2: CoP offsets from the ankles and normal moments (S, 3), m and N m.
 
     min |Psi eta - kappa|^2 + |e (eta - eta_d)|^2 within the safe soles, eta = (d_x, d_y, tau_n) per foot and
-    eta_d the point below which the ankle feels no torque. `ankle_moment` is what forces through the ankles
-    leave of the angular rate (3,).
+    eta_d the point below which the ankle feels no torque.
     """
     hessian, gradient, lower, upper = cop_program(
         forces,
         feet.rotation,
-        ankle_moment,
+        feet.com_to_ankle,
+        angular_rate,
         feet.safe.ankles,
         feet.safe.lower,
         feet.safe.upper,

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from momentum_lab.compiled import compiled
+from momentum_lab.momentum.wrench import cross
 
 _MATRIX, _VECTOR, _STACK = "f8[:, ::1]", "f8[::1]", "f8[:, :, ::1]"
 
@@ -86,9 +87,11 @@ def levers_of(arms: np.ndarray) -> np.ndarray:
     return levers
 
 
-@compiled(f"Tuple(({_MATRIX}, {_VECTOR}, {_MATRIX}))({_MATRIX}, {_STACK}, {_VECTOR}, {_VECTOR}, {_MATRIX}, f8, f8)")
+@compiled(
+    f"Tuple(({_MATRIX}, {_VECTOR}, {_MATRIX}))({_MATRIX}, {_STACK}, {_VECTOR}, {_VECTOR}, {_MATRIX}, f8, f8)"
+)
 def force_program(
-    levers: np.ndarray,
+    arms: np.ndarray,
     rotation: np.ndarray,
     force: np.ndarray,
     angular_rate: np.ndarray,
@@ -99,7 +102,7 @@ def force_program(
     """Hessian, gradient and rows of |f - sum f_i|^2 + w^2 |dk/dt - sum a_i x f_i|^2 + e^2 sum |f_i|^2, halved.
 
     Args:
-        levers: [S(a_1) ... S(a_S)] (3, 3 S), a_i from the CoM to the ankles, m.
+        arms: a_i from the CoM to the ankles (S, 3), m.
         rotation: axes of the soles in the world (S, 3, 3).
         force: f (3,), N.
         angular_rate: dk/dt (3,), N m.
@@ -111,7 +114,7 @@ def force_program(
         P (3 S, 3 S), c (3 S,), and the rows in world axes (S m, 3 S).
     """
     count, facets = len(rotation), len(pyramid)
-    size = 3 * count
+    size, levers = 3 * count, levers_of(arms)
     hessian, gradient, rows = np.zeros((size, size)), np.zeros(size), np.zeros((count * facets, size))
     for i in range(size):
         gradient[i] = -force[i % 3]
@@ -132,12 +135,13 @@ def force_program(
 
 @compiled(
     f"Tuple(({_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}))"
-    f"({_MATRIX}, {_STACK}, {_VECTOR}, {_MATRIX}, {_MATRIX}, {_MATRIX}, f8, f8, f8)"
+    f"({_MATRIX}, {_STACK}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_MATRIX}, {_MATRIX}, f8, f8, f8)"
 )
 def cop_program(
     forces: np.ndarray,
     rotation: np.ndarray,
-    ankle_moment: np.ndarray,
+    arms: np.ndarray,
+    angular_rate: np.ndarray,
     ankle_in_sole: np.ndarray,
     lower: np.ndarray,
     upper: np.ndarray,
@@ -154,7 +158,8 @@ def cop_program(
     Args:
         forces: f_i (S, 3), N.
         rotation: axes R of the soles in the world (S, 3, 3).
-        ankle_moment: angular rate without what forces through the ankles give of it (3,), N m.
+        arms: a_i from the CoM to the ankles (S, 3), m.
+        angular_rate: dk/dt (3,), N m.
         ankle_in_sole: ankles in the sole frames, h_i their heights (S, 3), m.
         lower: least shifts (S, 2), m.
         upper: largest shifts (S, 2), m.
@@ -167,11 +172,12 @@ def cop_program(
     """
     count = len(forces)
     size = 3 * count
-    levers, easy, remaining = np.zeros((3, size)), np.zeros(size), ankle_moment.copy()
+    levers, easy, remaining = np.zeros((3, size)), np.zeros(size), angular_rate.copy()
     low, high = np.empty(size), np.empty(size)
     for foot in range(count):
         fx, fy, fz = forces[foot]
         turn, height, at = rotation[foot], ankle_in_sole[foot, 2], 3 * foot
+        remaining -= cross(arms[foot], forces[foot])
         for k in range(3):
             x, y, z = turn[0, k], turn[1, k], turn[2, k]
             column = (fz * y - fy * z, fx * z - fz * x, fy * x - fx * y)
@@ -224,7 +230,10 @@ def foot_wrenches(
     for foot in range(len(forces)):
         turn = rotation[foot]
         fx, fy, fz = forces[foot]
-        px, py = ankle_in_sole[foot, 0] + sole_moments[foot, 0], ankle_in_sole[foot, 1] + sole_moments[foot, 1]
+        px, py = (
+            ankle_in_sole[foot, 0] + sole_moments[foot, 0],
+            ankle_in_sole[foot, 1] + sole_moments[foot, 1],
+        )
         arm = (
             turn[0, 0] * px + turn[0, 1] * py,
             turn[1, 0] * px + turn[1, 1] * py,

@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
-from momentum_lab.compiled import compiled
 from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute
+from momentum_lab.compiled import compiled
 
 _MATRIX, _VECTOR = "f8[:, ::1]", "f8[::1]"
 
@@ -21,7 +21,7 @@ def minimum_on_equalities(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The minimiser where only rows with equal bounds count: P x + c + A^T nu = 0 and A x = b.
 
-    With P = U^T U, y = U^-T c and Y = U^-T A^T: (Y^T Y) nu = -(b + Y^T y) and x = -U^-1 (y + Y nu).
+    With P = L L^T, y = L^-1 c and Y = L^-1 A^T: (Y^T Y) nu = -(b + Y^T y) and x = -L^-T (y + Y nu).
 
     Args:
         hessian: P (n, n).
@@ -50,7 +50,7 @@ def minimum_on_equalities(
     for i in range(size):
         for j in range(count):
             for k in range(j, count):
-                schur[j, k] += columns[i, j] * columns[i, k]
+                schur[k, j] += columns[i, j] * columns[i, k]
             pressure[j, 0] -= columns[i, j] * columns[i, count]
     for j in range(count):
         pressure[j, 0] -= lower[size + equal[j]]

@@ -83,7 +83,11 @@ class Certificate:
     @property
     def worst(self) -> float:
         """The largest of the three; NaN when there is any."""
-        return math.nan if math.isnan(self.primal + self.dual + self.gap) else max(self.primal, self.dual, self.gap)
+        return (
+            math.nan
+            if math.isnan(self.primal + self.dual + self.gap)
+            else max(self.primal, self.dual, self.gap)
+        )
 
 
 @dataclass(frozen=True, slots=True)

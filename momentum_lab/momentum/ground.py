@@ -177,7 +177,9 @@ def cop_from_momentum_rate(
     Returns:
         (p_x, p_y) in the world (2,), m; NaN without a normal force.
     """
-    return np.array(cop_coordinates(ground_wrench_from_momentum_rate(momentum_rate, mass), com_in_world, ground_height))
+    return np.array(
+        cop_coordinates(ground_wrench_from_momentum_rate(momentum_rate, mass), com_in_world, ground_height)
+    )
 
 
 def cmp_from_force(force: np.ndarray, com_in_world: np.ndarray, ground_height: float = 0.0) -> np.ndarray:
@@ -193,12 +195,7 @@ def cmp_from_force(force: np.ndarray, com_in_world: np.ndarray, ground_height: f
     Returns:
         (s_x, s_y) in the world (2,), m; NaN without a normal force.
     """
-    fx, fy, fz = force.tolist()
-    rx, ry, rz = com_in_world.tolist()
-    if abs(fz) < NO_FORCE:
-        return np.array((math.nan, math.nan))
-    slope = (rz - ground_height) / fz
-    return np.array((rx - fx * slope, ry - fy * slope))
+    return np.array(cmp_coordinates(force, com_in_world, ground_height))
 
 
 def cmp_cop_gap(angular_momentum_rate: np.ndarray, normal_force: float) -> np.ndarray:
@@ -247,3 +244,14 @@ def cop_coordinates(wrench: np.ndarray, point: np.ndarray, ground_height: float)
         return math.nan, math.nan
     height = cz - ground_height
     return cx - (ny + height * fx) / fz, cy + (nx - height * fy) / fz
+
+
+@compiled("UniTuple(f8, 2)(f8[:], f8[:], f8)")
+def cmp_coordinates(force: np.ndarray, com_in_world: np.ndarray, ground_height: float) -> tuple[float, float]:
+    """See `cmp_from_force`."""
+    fx, fy, fz = force
+    rx, ry, rz = com_in_world
+    if abs(fz) < NO_FORCE:
+        return math.nan, math.nan
+    slope = (rz - ground_height) / fz
+    return rx - fx * slope, ry - fy * slope

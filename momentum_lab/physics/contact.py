@@ -21,9 +21,9 @@ from functools import lru_cache
 import numpy as np
 import pinocchio as pin
 
+from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute, solved
 from momentum_lab.compiled import compiled
 from momentum_lab.errors import SimulationError
-from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute, solved
 
 _MATRIX, _VECTOR = "f8[:, ::1]", "f8[::1]"
 
@@ -122,16 +122,14 @@ def solve_contact(
     iterations = 0
     if not residual <= _PRECISION:
         solver = _solve_cones(coupling, drift, closing, contacts)
-        impulse = solver.getPrimalSolution()
+        impulse = solver.getPrimalSolution().copy()  # read-only
         residual = float(solver.getAbsoluteConvergenceResidual())
         iterations = int(solver.getIterationCount())
-    frame_impulse = impulse @ contacts.spread
-    change = half @ frame_impulse
-    backward_substitute(factor, change)
+    velocity, frame_impulse = moved(factor, half, free_velocity, contacts.spread, impulse)
     return ContactSolution(
-        velocity=free_velocity + change,
+        velocity=velocity,
         impulse=impulse.reshape(-1, 3),
-        frame_impulse=frame_impulse.reshape(-1, 6),
+        frame_impulse=frame_impulse,
         residual=residual,
         iterations=iterations,
     )
@@ -141,16 +139,16 @@ def solve_contact(
 def contact_problem(
     factor: np.ndarray, free_impulse: np.ndarray, velocity: np.ndarray, frame_jacobian: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Velocity without contact, U^-T J_f^T, and C and d of the frames' velocities C w + d under impulses w.
+    """Velocity without contact, L^-1 J_f^T, and C and d of the frames' velocities C w + d under impulses w.
 
     Args:
-        factor: U with U^T U = H (nv, nv).
+        factor: L with L L^T = H (nv, nv).
         free_impulse: p of everything but contact (nv,), N s and N m s.
         velocity: generalized velocity at the start of the step (nv,).
         frame_jacobian: J_f (6 B, nv).
 
     Returns:
-        v + H^-1 p (nv,), U^-T J_f^T (nv, 6 B), C = J_f H^-1 J_f^T (6 B, 6 B), d = J_f (v + H^-1 p) (6 B,).
+        v + H^-1 p (nv,), L^-1 J_f^T (nv, 6 B), C = J_f H^-1 J_f^T (6 B, 6 B), d = J_f (v + H^-1 p) (6 B,).
     """
     size, frames = velocity.size, len(frame_jacobian)
     columns = np.empty((size, frames + 1))
@@ -168,6 +166,29 @@ def contact_problem(
             for k in range(frames):
                 coupling[j, k] += half[i, j] * half[i, k]
     return free_velocity, half, coupling, frame_jacobian @ free_velocity
+
+
+@compiled(f"Tuple(({_VECTOR}, {_MATRIX}))({_MATRIX}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_VECTOR})")
+def moved(
+    factor: np.ndarray,
+    half: np.ndarray,
+    free_velocity: np.ndarray,
+    spread: np.ndarray,
+    impulse: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Velocity v + H^-1 (p + J_f^T w) (nv,) under point impulses lambda, and w = S^T lambda (B, 6).
+
+    Args:
+        factor: L with L L^T = H (nv, nv).
+        half: L^-1 J_f^T (nv, 6 B).
+        free_velocity: v + H^-1 p (nv,).
+        spread: S (3 n, 6 B).
+        impulse: lambda (3 n,), N s.
+    """
+    frame_impulse = impulse @ spread
+    change = half @ frame_impulse
+    backward_substitute(factor, change)
+    return free_velocity + change, frame_impulse.reshape(-1, 6)
 
 
 @compiled(f"Tuple(({_VECTOR}, f8))({_MATRIX}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_VECTOR})")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from momentum_lab.compiled import compiled
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -43,10 +44,10 @@ def joint_stops(robot: RobotModel, dynamics: Dynamics, timestep: float) -> Joint
     0.02 rad, tau = -k (excess + dt v+) - d v+, so the joint moves as if it had the inertia H_jj + dt d + dt^2 k.
     H_jj alone would be the inertia of a light foot under the weight of the whole robot.
     """
+    if within_limits(dynamics.state.q, robot.position_lower, robot.position_upper):
+        return None
     angle = dynamics.state.q[7:]
     excess = angle - np.minimum(np.maximum(angle, robot.position_lower), robot.position_upper)
-    if not excess.any():
-        return None
     beyond = np.flatnonzero(excess)
     rows = beyond + 6
     as_strong = robot.effort_limit[beyond] * _TIME**2 / _GIVES_WAY
@@ -54,3 +55,12 @@ def joint_stops(robot: RobotModel, dynamics: Dynamics, timestep: float) -> Joint
     stiffness, damping = inertia / _TIME**2, 2.0 * inertia / _TIME
     torque = -stiffness * excess[beyond] - (damping + timestep * stiffness) * dynamics.state.v[rows]
     return JointStops(rows, torque, timestep * damping + timestep**2 * stiffness)
+
+
+@compiled("boolean(f8[::1], f8[::1], f8[::1])")
+def within_limits(q: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> bool:
+    """Whether no joint angle of a configuration q (nq,) is beyond its limits (na,), rad; NaN is not beyond."""
+    for joint in range(lower.size):  # noqa: SIM110 - numba compiles no all()
+        if q[7 + joint] < lower[joint] or q[7 + joint] > upper[joint]:
+            return False
+    return True

@@ -106,9 +106,7 @@ class Simulator:
             return np.zeros(self.robot.na)
         return stops.felt_torque((state.v - dynamics.state.v) / self.timestep)
 
-    def _contact_wrenches(
-        self, touching: list[Touch], wrenches: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def _contact_wrenches(self, touching: list[Touch], wrenches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Ground on each foot about its sole (F, 6), and on all else about the world origin (6,).
 
         `wrenches` (B, 6) are those on the touching bodies in their order, about the origins of their frames.
@@ -144,14 +142,14 @@ def _together(touching: list[Touch], nv: int) -> Contacts:
         return Contacts(np.zeros((0, nv)), np.zeros((0, 0)), np.zeros(0), ())
     gap = np.concatenate([touch.gap for touch in touching])
     spread = np.zeros((3 * gap.size, 6 * len(touching)))
-    row = 0
-    for column, touch in enumerate(touching):
-        rows = len(touch.spread)
-        spread[row : row + rows, 6 * column : 6 * column + 6] = touch.spread
-        row += rows
+    friction: tuple[float, ...] = ()
+    for body, touch in enumerate(touching):
+        row = 3 * len(friction)
+        friction += (touch.patch.friction,) * touch.gap.size
+        spread[row : 3 * len(friction), 6 * body : 6 * body + 6] = touch.spread
     return Contacts(
         frame_jacobian=np.concatenate([touch.frame_jacobian for touch in touching]),
         spread=spread,
         gap=gap,
-        friction=tuple([touch.patch.friction for touch in touching for _ in range(touch.gap.size)]),
+        friction=friction,
     )

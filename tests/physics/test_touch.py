@@ -76,7 +76,9 @@ def test_bodies_near_the_floor_are_found_where_they_are(robot, rng):
     assert {touch.foot for touch in touches} == {None}
     assert_close(np.concatenate([touch.position for touch in touches]), position[near], 1e-12)
     assert_close(np.concatenate([touch.gap for touch in touches]), position[near, 2] - 0.8, 1e-12)
-    velocity = np.concatenate([touch.spread @ touch.frame_jacobian @ state.v for touch in touches]).reshape(-1, 3)
+    velocity = np.concatenate([touch.spread @ touch.frame_jacobian @ state.v for touch in touches]).reshape(
+        -1, 3
+    )
     assert_close(velocity, difference[near] / (2 * EPS), 1e-6)
 
 
