@@ -133,14 +133,16 @@ def _profile(args: Namespace) -> int:
 
 
 def _show_profile(name: str, rows: list[ProfileRow]) -> None:
+    console = Console(markup=False)
     table = Table(title=f"A tick of {name}, call by call", box=None)
-    table.add_column("function", overflow="ellipsis", no_wrap=True)
+    width = max(30, console.width - _BAR - 30)  # the numbers are worth more than the ends of names
+    table.add_column("function", overflow="ellipsis", no_wrap=True, max_width=width)
     for heading in ("calls", "own us", "us"):
-        table.add_column(heading, justify="right")
+        table.add_column(heading, justify="right", no_wrap=True, min_width=6)
     table.add_column("share of the tick", min_width=_BAR)
     for row in rows:
         bar = "\u2588" * round(_BAR * row.total / rows[0].total)
         numbers = (f"{row.calls:.1f}", f"{row.own:.1f}", f"{row.total:.1f}")
         table.add_row(f"{'  ' * row.depth}{row.name}", *numbers, bar)
     table.caption = "being watched makes every call about a microsecond slower"
-    Console(markup=False).print(table)
+    console.print(table)

@@ -71,7 +71,7 @@ class WholeBodyGains:
         0.03, "1", 0.001, 1.0, "Change of a foot's force, in parts of the weight, as bad as those errors."
     )
     momentum_weight: float = gain(1e4, "1", 1.0, 1e6, "Weight of the momentum that the slider keeps.")
-    posture_weight: float = gain(0.01, "1", 0.0, 1e2, "Weight of the upper body's posture.")
+    posture_weight: float = gain(0.1, "1", 0.0, 1e2, "Weight of the upper body's posture.")
     pelvis_weight: float = gain(0.01, "1", 0.0, 1e2, "Weight of an upright pelvis.")
     posture_stiffness: float = gain(
         100.0, "1/s^2", 0.0, 400.0, "How strongly upper body and pelvis are pulled to their posture."

@@ -198,12 +198,13 @@ def test_every_moment_of_a_push_has_an_answer(robot):
         assert answer(robot, dynamics).failure is None
 
 
-def pushed(robot, gains, seconds=3.0, **push) -> Scenario:
+def pushed(robot, gains, seconds=3.0, priority=0.0, **push) -> Scenario:
     return Scenario(
         "push",
         robot=robot.spec.name,
         controller="whole-body-qp",
         gains=gains,
+        priority=priority,
         seconds=seconds,
         pushes=(Push(duration=0.1, start=0.2, **push),),
     )
@@ -217,6 +218,20 @@ def test_it_stands_the_chapters_push(robot, gains):
     assert session.solver_failures == 0
     com = session.recording.column("com")
     assert np.linalg.norm(com[-1] - com[0]) < 5 * MM
+
+
+# A forward push of 0.1 s at which keeping linear momentum stands and keeping angular momentum falls, N.
+PAIR_PUSH = {"talos": 340.0, "g1": 130.0}
+
+
+def test_the_pair(robot):
+    """The lesson of the chapter in one program: what matters more decides who stands."""
+    stands, falls = (
+        play(robot, pushed(robot, {}, 2.5, priority=p, force=PAIR_PUSH[robot.spec.name])) for p in (0.0, 1.0)
+    )
+    assert stands.fall is None
+    assert np.linalg.norm(stands.recording.latest["com_velocity"]) < 0.05
+    assert falls.fall is not None
 
 
 def test_physics_gives_the_wrenches_it_counts_on(robot):
