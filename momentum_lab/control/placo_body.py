@@ -29,7 +29,7 @@ def placo_body(robot: RobotModel) -> placo.RobotWrapper:
     """The robot in PlaCo; joints, masses, rotor inertias, limits and the order of q and v are those of `robot`."""
     root = bare_urdf(robot.urdf, robot.spec.feet)
     for sole in robot.soles:
-        add_fixed_link(root, middle_frame(sole), robot.spec.feet[sole.name].frame, middle_of(sole))
+        add_fixed_link(root, middle_frame(sole), robot.spec.feet[sole.name].frame, middle_of(sole).tolist())
     urdf = ET.tostring(root, encoding="unicode")
     body = placo.RobotWrapper(str(robot.urdf), placo.Flags.ignore_collisions, urdf)
     body.model.armature = robot.model.armature
