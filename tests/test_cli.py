@@ -119,7 +119,7 @@ BAD_VALUES = [
     ("list", "list: got nothing; allowed: robots, controllers, scenarios, lessons, gains"),
     ("list cats", "list: got cats; allowed: robots, controllers, scenarios, lessons, gains"),
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
-    ("fly", "command: got fly; allowed: app, run, list, bench"),
+    ("fly", "command: got fly; allowed: app, run, list, equations, bench"),
 ]
 
 

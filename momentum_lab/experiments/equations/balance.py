@@ -91,7 +91,7 @@ EQUATIONS = (
         f"{_TEST}outputs.py::test_springs_pull_back_and_dampers_brake",
         _outputs,
         1e-6,
-        "m/s^2, rad/s^2",
+        "SI",
         "y_d' is missing: printed is the case of a set-point at rest",
     ),
 )

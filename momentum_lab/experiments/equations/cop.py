@@ -183,10 +183,12 @@ _PRINTED = f"{_TEST}the_printed_rows_of_equation_53"
 _LINKS = "tests/momentum/test_segments.py::test_accelerations_are_differences_of_velocities"
 _SUMS = f"{_TEST}cop_of_the_links_is_that_of_the_momentum_rate"
 _SPINS = f"{_TEST}moments_of_the_links_change_their_spins"
-_IDENTITY = f"{_TEST}segment_rows_are_the_normal_force_times_the_distance"
+_BOUNDED = "tests/control/test_slack_qp.py::TestOneTick::test_the_cop_bounds_of_all_links_hold"
 _AXES = "z up here, y up in Eq. 21 that it expands; tau_i is about each link's CoM, not about G"
 _GYRO = "the gyroscopic moment omega x I omega is missing, and I is the full inertia in world axes"
-_SIZE = "blocks have one entry per link with mass; a fixed foot counts in the total mass and K_r or in neither"
+_SIZE = (
+    "blocks have one entry per link with mass; a fixed foot counts in the total mass and K_r or in neither"
+)
 _UNIT = "m g m"
 
 EQUATIONS = (
@@ -220,7 +222,7 @@ EQUATIONS = (
         52,
         "H_r y_r'' <= K_r",
         _ROWS,
-        _IDENTITY,
+        _BOUNDED,
         _bounds,
         1e-9,
         _UNIT,
@@ -248,8 +250,8 @@ EQUATIONS = (
         f"its dot is the inner product m^T r, transposes are void; {_SIZE}",
     ),
     *(
-        Equation(56 + number, f"{name} = {name} m^T", _ROWS, _IDENTITY, _edge(number), 1e-11, _UNIT)
+        Equation(56 + number, f"{name} = {name} m^T", _ROWS, _PRINTED, _edge(number), 1e-11, _UNIT)
         for number, name in enumerate(("x_max", "x_min", "y_max", "y_min"))
     ),
-    Equation(60, "y_r'' = J_r q'' + Psi_r", _STACKED, _LINKS, _accelerations, 1e-5, "m/s^2, rad/s^2"),
+    Equation(60, "y_r'' = J_r q'' + Psi_r", _STACKED, _LINKS, _accelerations, 1e-5, "SI"),
 )

@@ -22,7 +22,8 @@ class Equation:
         test: node id of a test that holds it.
         residual: what the function says against a second derivation; see `Residual`.
         tolerance: the residual that is still rounding, finite differences or a solver's accuracy.
-        unit: of residual and tolerance; m g is the weight of the robot.
+        unit: of residual and tolerance; SI where linear and angular rows have one each, m g for wrenches and
+            torques in parts of the weight (moments: times 1 m).
         erratum: what is wrong or incomplete as printed, None when nothing is.
     """
 

@@ -141,7 +141,7 @@ EQUATIONS = (
         f"{_TEST}momentum_rate_is_gravity_plus_contacts_plus_push",
         _angular_rate,
         1e-9,
-        "m g (m)",
+        "m g",
         _PUSH,
     ),
     Equation(

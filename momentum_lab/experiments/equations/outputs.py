@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from momentum_lab.control.accelerations import contact_constraint
+from momentum_lab.control.controller import Reference
 from momentum_lab.control.outputs import (
     LiftedSoles,
     Output,
@@ -36,9 +37,9 @@ SPEED = 0.3
 """Of the standing robot whose outputs are measured, m/s and rad/s."""
 
 
-def outputs_on_one_leg(scene: Scene, gains: SlackGains) -> list[Output]:
+def outputs_on_one_leg(scene: Scene, goal: Reference, gains: SlackGains) -> list[Output]:
     """CoM, pelvis, lifted sole and posture with the weights of the controller that keeps the CoM."""
-    dynamics, goal, robot = scene.dynamics, standing_goal(scene, LEFT), scene.robot
+    dynamics, robot = scene.dynamics, scene.robot
     body = Spring(gains.body_stiffness, gains.body_damping)
     com = Spring(gains.com_stiffness, gains.com_damping)
     lifted = LiftedSoles(robot).goal(dynamics, goal.posture, 1, 0)
@@ -81,7 +82,7 @@ def _velocities(robot: RobotModel, seed: int) -> float:
         posture = state.q[7 + robot.upper_body]
         return _stacked((moved.com_in_world, pelvis, moved.sole_position[1], sole, posture))
 
-    outputs = outputs_on_one_leg(scene, SlackGains())
+    outputs = outputs_on_one_leg(scene, standing_goal(scene, LEFT), SlackGains())
     return worst(_stacked([each.jacobian @ scene.state.v for each in outputs]) - scene.rate(output))
 
 
@@ -94,7 +95,7 @@ def _accelerations(robot: RobotModel, seed: int) -> float:
         pelvis, sole = moved.pelvis_jacobian[3:] @ state.v, moved.sole_jacobian[1] @ state.v
         return _stacked((moved.com_velocity, pelvis, sole, state.v[6 + robot.upper_body]))
 
-    outputs = outputs_on_one_leg(scene, SlackGains())
+    outputs = outputs_on_one_leg(scene, standing_goal(scene, LEFT), SlackGains())
     found = _stacked([each.jacobian @ scene.acceleration + each.bias for each in outputs])
     return worst(found - scene.rate(velocity))
 
@@ -103,7 +104,7 @@ def _rooted(robot: RobotModel, seed: int) -> float:
     """A robot rooted at its stance foot: all rows by Pinocchio's recursion, minus the torques, in m g."""
     scene = standing(robot, seed, LEFT, SPEED)
     motion = stance_motion(scene.dynamics, standing_goal(scene, LEFT), LEFT, 0.0)
-    x = scene.rng.normal(size=motion.acceleration.matrix.shape[1])
+    x = scene.draw(motion.acceleration.matrix.shape[1])
     wrench = motion.wrench.at(x).reshape(1, 6)
     rows = inverse_dynamics_by_recursion(scene, motion.acceleration.at(x), wrench, LEFT)
     rows[6:] -= motion.torque.at(x)
@@ -125,11 +126,9 @@ _OUTPUTS = "control.outputs.com_output"
 _SECOND = "tests/control/test_outputs.py::test_accelerations_are_second_differences"
 
 EQUATIONS = (
-    Equation(43, "y = x(q)", "robot.model.RobotModel.at", _SECOND, _positions, 1e-11, "m, 1"),
-    Equation(44, "y' = J q'", _OUTPUTS, _SECOND, _velocities, 1e-6, "m/s, rad/s"),
-    Equation(
-        45, "y'' = J q'' + Psi, Psi = J' q'", _OUTPUTS, _SECOND, _accelerations, 1e-5, "m/s^2, rad/s^2"
-    ),
+    Equation(43, "y = x(q)", "robot.model.RobotModel.at", _SECOND, _positions, 1e-11, "SI"),
+    Equation(44, "y' = J q'", _OUTPUTS, _SECOND, _velocities, 1e-6, "SI"),
+    Equation(45, "y'' = J q'' + Psi, Psi = J' q'", _OUTPUTS, _SECOND, _accelerations, 1e-5, "SI"),
     Equation(
         46,
         "H q'' + C q' + tau_g - J_c^T f_c = tau",
@@ -137,7 +136,7 @@ EQUATIONS = (
         "tests/control/test_stance_motion.py::test_every_choice_is_a_motion_of_the_robot",
         _rooted,
         1e-9,
-        "m g (m)",
+        "m g",
         "no solution for a free base without J_c^T f_c; its C is a vector, that of Eq. 28 a matrix",
     ),
     Equation(
@@ -147,7 +146,7 @@ EQUATIONS = (
         "tests/control/test_slack_qp.py::TestOneTick::test_equation_47_with_its_corrections_holds",
         _system,
         1e-8,
-        "m g (m), m/s^2",
+        "m g",
         "-C is -(C + tau_g); y'' = y_d'' without a slack leaves no solution when a bound of Eq. 52 is active",
     ),
 )

@@ -76,7 +76,7 @@ EQUATIONS = (
         f"{_TEST}feet_momentum_and_reference_in_this_order",
         _feet,
         1e-9,
-        "m/s, rad/s",
+        "SI",
     ),
     Equation(
         25,
@@ -85,7 +85,7 @@ EQUATIONS = (
         f"{_TEST}the_least_squares_of_eq_25_has_the_same_answer",
         _least_squares,
         1e-6,
-        "m/s, m^2/s",
+        "SI",
     ),
     Equation(
         26,
@@ -94,6 +94,6 @@ EQUATIONS = (
         f"{_TEST}feet_momentum_and_reference_in_this_order",
         _nearest,
         1e-7,
-        "m/s, rad/s",
+        "SI",
     ),
 )

@@ -47,6 +47,10 @@ class Scene:
         """The weight m g, N."""
         return self.robot.mass * GRAVITY
 
+    def draw(self, count: int) -> np.ndarray:
+        """Random numbers (count,) of the size of 1."""
+        return np.asarray(self.rng.normal(size=count))
+
     def after(self, time: float) -> State:
         """The state a short time later under the constant acceleration."""
         v, a = self.state.v, self.acceleration
