@@ -18,7 +18,16 @@ from momentum_lab.cli import equations as command
 from momentum_lab.cli import main
 from momentum_lab.control import desired, slack_qp
 from momentum_lab.experiments import equations as catalog
-from momentum_lab.experiments.equations import EQUATIONS, SEED, Measurement, balance, cop, measured, momentum
+from momentum_lab.experiments.equations import (
+    EQUATIONS,
+    SEED,
+    Measurement,
+    balance,
+    cop,
+    measured,
+    momentum,
+    motion,
+)
 from momentum_lab.experiments.equations.scenes import flying, standing
 from momentum_lab.robot.catalog import robot_names
 
@@ -154,7 +163,7 @@ class TestWrongFunctionsAreNoticed:
 
     @pytest.mark.parametrize("number", [20, 32])
     def test_a_momentum_rate_without_bias(self, talos, number, monkeypatch):
-        for module in (momentum, importlib.import_module("momentum_lab.experiments.equations.torque")):
+        for module in (momentum, motion):
             monkeypatch.setattr(module, "momentum_rate", lambda dynamics, a: dynamics.centroidal_map @ a)
         assert self.residual(talos, number) > 1e3
 

@@ -7,9 +7,12 @@ from dataclasses import dataclass
 
 from momentum_lab.experiments.equations import (
     balance,
+    bounds,
     cop,
     ground,
+    links,
     momentum,
+    motion,
     outputs,
     resolved,
     slack,
@@ -18,7 +21,7 @@ from momentum_lab.experiments.equations import (
 from momentum_lab.experiments.equations.equation import Equation
 from momentum_lab.robot.model import RobotModel
 
-_ROOMS = (momentum, ground, resolved, torque, balance, outputs, cop, slack)
+_ROOMS = (links, momentum, ground, resolved, motion, torque, balance, outputs, cop, bounds, slack)
 
 EQUATIONS: tuple[Equation, ...] = tuple(
     sorted((each for room in _ROOMS for each in room.EQUATIONS), key=lambda each: each.number)

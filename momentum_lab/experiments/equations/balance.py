@@ -87,7 +87,7 @@ EQUATIONS = (
     Equation(
         42,
         "y_d'' = Gamma_p (y_d - y) + Gamma_d (y_d' - y')",
-        "control.outputs.Spring",
+        "control.outputs.com_output",
         f"{_TEST}outputs.py::test_springs_pull_back_and_dampers_brake",
         _outputs,
         1e-6,

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-import pinocchio as pin
 
 from momentum_lab.experiments.equations.equation import Equation
-from momentum_lab.experiments.equations.scenes import Scene, flying, worst
+from momentum_lab.experiments.equations.pressed import Pressed, pressed
+from momentum_lab.experiments.equations.scenes import worst
 from momentum_lab.momentum.ground import (
     cmp_cop_gap,
     cmp_from_force,
@@ -19,50 +17,10 @@ from momentum_lab.momentum.ground import (
 from momentum_lab.momentum.wrench import y_up_from_z_up, z_up_from_y_up
 from momentum_lab.robot.model import RobotModel
 
-_POINTS = 4
-
-
-@dataclass(frozen=True, slots=True)
-class _Pressed:
-    """A robot whose soles are pressed at some points of a ground plane, and the motion that follows.
-
-    Attributes:
-        scene: its state.
-        rate: Pinocchio's [dl/dt; dk/dt] of that motion (6,), N and N m.
-        wrenches: on the soles, about their origins (2, 6), N and N m.
-        force: sum of all forces (3,), N.
-        cop: mean of the points, weighted with their normal forces (3,), m.
-    """
-
-    scene: Scene
-    rate: np.ndarray
-    wrenches: np.ndarray
-    force: np.ndarray
-    cop: np.ndarray
-
-
-def _pressed(robot: RobotModel, seed: int) -> _Pressed:
-    scene = flying(robot, seed)
-    dynamics, rng = scene.dynamics, scene.rng
-    ground = dynamics.com_in_world + np.array([0.0, 0.0, -rng.uniform(0.5, 1.0)])
-    points = ground + rng.normal(scale=0.1, size=(2, _POINTS, 3)) * [1.0, 1.0, 0.0]
-    forces = rng.uniform([-0.2, -0.2, 0.2], [0.2, 0.2, 1.0], (2, _POINTS, 3)) * scene.weight / _POINTS
-    moments = np.cross(points - dynamics.sole_position[:, None], forces)
-    wrenches = np.concatenate((forces.sum(1), moments.sum(1)), axis=1)
-    effort = np.concatenate((np.zeros(6), robot.effort_limit * rng.uniform(-0.3, 0.3, robot.na)))
-    effort += np.einsum("fi,fij->j", wrenches, dynamics.sole_jacobian) - dynamics.nonlinear_effects
-    acceleration = np.linalg.solve(dynamics.mass_matrix, effort)
-    data = robot.model.createData()
-    state = scene.state
-    rate = pin.computeCentroidalMomentumTimeVariation(robot.model, data, state.q, state.v, acceleration)
-    normal = forces[..., 2]
-    cop = np.einsum("fp,fpi->i", normal, points) / normal.sum()
-    return _Pressed(scene, rate.vector, wrenches, forces.sum((0, 1)), cop)
-
 
 def _difference(robot: RobotModel, seed: int) -> np.ndarray:
     """Foot wrenches and gravity against Pinocchio's momentum rate of the motion they cause, in m g (m)."""
-    case = _pressed(robot, seed)
+    case = pressed(robot, seed)
     dynamics = case.scene.dynamics
     found = momentum_rate_from_wrenches(
         case.wrenches, dynamics.sole_position, dynamics.com_in_world, robot.mass
@@ -78,20 +36,20 @@ def _linear_rate(robot: RobotModel, seed: int) -> float:
     return worst(_difference(robot, seed)[:3])
 
 
-def _found_cop(case: _Pressed) -> np.ndarray:
+def _found_cop(case: Pressed) -> np.ndarray:
     com = case.scene.dynamics.com_in_world
     return cop_from_momentum_rate(case.rate, com, case.scene.robot.mass, float(case.cop[2]))
 
 
 def _cop(robot: RobotModel, seed: int) -> float:
     """The CoP of a motion against the mean of the points that are pressed."""
-    case = _pressed(robot, seed)
+    case = pressed(robot, seed)
     return worst(_found_cop(case) - case.cop[:2])
 
 
 def _cmp(robot: RobotModel, seed: int) -> float:
     """Distance of the CoM from the line of force through the CMP, |(s - r_G) x f| / |f|."""
-    case = _pressed(robot, seed)
+    case = pressed(robot, seed)
     com, height = case.scene.dynamics.com_in_world, float(case.cop[2])
     arm = np.append(cmp_from_force(case.force, com, height), height) - com
     return worst(np.cross(arm, case.force)) / float(np.linalg.norm(case.force))
@@ -99,7 +57,7 @@ def _cmp(robot: RobotModel, seed: int) -> float:
 
 def _gap(robot: RobotModel, seed: int) -> float:
     """Against the line of force through the CoM and the mean of the points that are pressed."""
-    case = _pressed(robot, seed)
+    case = pressed(robot, seed)
     com = case.scene.dynamics.com_in_world
     on_the_ground = com + (case.cop[2] - com[2]) / case.force[2] * case.force
     return worst(cmp_cop_gap(case.rate[3:], float(case.force[2])) - (on_the_ground - case.cop)[:2])
@@ -107,13 +65,13 @@ def _gap(robot: RobotModel, seed: int) -> float:
 
 def _force(robot: RobotModel, seed: int) -> float:
     """The force that a motion needs against the sum of those that caused it."""
-    case = _pressed(robot, seed)
+    case = pressed(robot, seed)
     return worst(ground_reaction_force(case.rate[:3], robot.mass) - case.force) / case.scene.weight
 
 
 def _corrected(robot: RobotModel, seed: int) -> np.ndarray:
     """Eqs. 40 and 41 in their own y-up axes with errata put right, against the CoP z up (2,), m."""
-    case = _pressed(robot, seed)
+    case = pressed(robot, seed)
     above = case.scene.dynamics.com_in_world - [0.0, 0.0, case.cop[2]]
     r, f, k = (y_up_from_z_up(each) for each in (above, case.force, case.rate[3:]))
     normal = y_up_from_z_up(case.rate[:3])[1] + case.scene.weight

@@ -1,4 +1,4 @@
-"""Eqs. 3 to 20: from joint rates to the centroidal momentum and its rate (sections 3.1 to 3.3)."""
+"""Eqs. 12 to 20: the centroidal momentum, its map and its rate (section 3.3)."""
 
 from __future__ import annotations
 
@@ -6,90 +6,17 @@ import numpy as np
 import pinocchio as pin
 
 from momentum_lab.experiments.equations.equation import Equation
-from momentum_lab.experiments.equations.scenes import Scene, flying, worst
-from momentum_lab.momentum.centroidal import LinkMomenta, link_by_link, momentum_rate, motion_transform
+from momentum_lab.experiments.equations.links import by_links
+from momentum_lab.experiments.equations.scenes import flying, worst
+from momentum_lab.momentum.centroidal import momentum_rate, motion_transform
 from momentum_lab.momentum.wrench import skew
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import State
 
 
-def _scene(robot: RobotModel, seed: int) -> tuple[Scene, LinkMomenta, pin.Data]:
-    scene = flying(robot, seed)
-    return scene, link_by_link(robot, scene.state), scene.kinematics()
-
-
-def _link_velocities(robot: RobotModel, seed: int) -> float:
-    """Against Pinocchio's velocities of the joints."""
-    _, links, data = _scene(robot, seed)
-    return worst(links.velocities - np.array([data.v[i].vector for i in range(1, robot.model.njoints)]))
-
-
-def _transforms(robot: RobotModel, seed: int) -> float:
-    """Against Pinocchio's action matrices."""
-    _, links, data = _scene(robot, seed)
-    expected = [data.liMi[i].toActionMatrixInverse() for i in range(1, robot.model.njoints)]
-    return worst(links.transforms - np.array(expected))
-
-
-def _system_jacobian(robot: RobotModel, seed: int) -> float:
-    """J against Pinocchio's link Jacobians, stacked, and J v against its link velocities."""
-    scene, links, data = _scene(robot, seed)
-    model = robot.model
-    pin.computeJointJacobians(model, data, scene.state.q)
-    joints = range(1, model.njoints)
-    stacked = [pin.getJointJacobian(model, data, i, pin.ReferenceFrame.LOCAL) for i in joints]
-    velocities = np.concatenate([data.v[i].vector for i in joints])
-    return worst(
-        links.system_jacobian - np.concatenate(stacked), links.system_jacobian @ scene.state.v - velocities
-    )
-
-
-def _link_momenta(robot: RobotModel, seed: int) -> float:
-    """Against l = m v_cm and k = c x l + I_cm omega."""
-    _, links, data = _scene(robot, seed)
-    expected = []
-    for i in range(1, robot.model.njoints):
-        body, velocity = robot.model.inertias[i], data.v[i]
-        linear = body.mass * (velocity.linear + np.cross(velocity.angular, body.lever))
-        angular = np.cross(body.lever, linear) + body.inertia @ velocity.angular
-        expected.append(np.concatenate((linear, angular)))
-    return worst(links.momenta - np.array(expected))
-
-
-def _link_inertias(robot: RobotModel, seed: int) -> float:
-    """The kinetic energy of a random velocity against that of its parts, m v_cm^2 / 2 + omega . I_cm omega / 2."""
-    scene, links, _ = _scene(robot, seed)
-    differences = []
-    for inertia, body in zip(links.inertias, list(robot.model.inertias)[1:], strict=True):
-        v, omega = scene.rng.normal(size=(2, 3))
-        at_com = v + np.cross(omega, body.lever)
-        parts = body.mass * at_com @ at_com + omega @ body.inertia @ omega
-        twist = np.concatenate((v, omega))
-        differences.append(0.5 * (twist @ inertia @ twist - parts))
-    return worst(np.array(differences))
-
-
-def _parallel_axes(robot: RobotModel, seed: int) -> float:
-    """Against turning each link about a parallel axis through its CoM, m (|c|^2 n.n - (c.n)^2) + n . I_cm n."""
-    scene, links, _ = _scene(robot, seed)
-    differences = []
-    for inertia, body in zip(links.inertias, list(robot.model.inertias)[1:], strict=True):
-        axis, c = scene.rng.normal(size=3), body.lever
-        expected = axis @ body.inertia @ axis + body.mass * (c @ c * (axis @ axis) - (c @ axis) ** 2)
-        differences.append(axis @ inertia[3:, 3:] @ axis - expected)
-    return worst(np.array(differences))
-
-
-def _system_momentum(robot: RobotModel, seed: int) -> float:
-    """All link momenta at once against Pinocchio's own inertia times velocity, link by link."""
-    _, links, data = _scene(robot, seed)
-    expected = [(robot.model.inertias[i] * data.v[i]).vector for i in range(1, robot.model.njoints)]
-    return worst(links.momenta - np.array(expected))
-
-
 def _momentum_about_com(robot: RobotModel, seed: int) -> float:
     """Against sum m_i dc_i and sum (c_i - r_G) x m_i dc_i + I_i omega_i, in the world."""
-    _, links, data = _scene(robot, seed)
+    _, links, data = by_links(robot, seed)
     total = np.zeros(6)
     for i in range(1, robot.model.njoints):
         body, place = robot.model.inertias[i], data.oMi[i]
@@ -104,7 +31,7 @@ def _momentum_about_com(robot: RobotModel, seed: int) -> float:
 
 def _projection(robot: RobotModel, seed: int) -> float:
     """A rigid body turning about the CoM moves each link's origin by v + omega x (o_i - r_G), in link axes."""
-    scene, links, data = _scene(robot, seed)
+    scene, links, data = by_links(robot, seed)
     v, omega = scene.rng.normal(size=(2, 3))
     found = (links.projection @ np.concatenate((v, omega))).reshape(-1, 2, 3)
     frames = [data.oMi[i] for i in range(1, robot.model.njoints)]
@@ -118,7 +45,7 @@ def _projection(robot: RobotModel, seed: int) -> float:
 
 def _centre_of_mass(robot: RobotModel, seed: int) -> float:
     """Against the first moment of mass in the base rows of the mass matrix: m S(c) of the whole robot."""
-    scene, links, data = _scene(robot, seed)
+    scene, links, data = by_links(robot, seed)
     base = data.oMi[1]
     moment = skew(base.rotation.T @ (links.com_in_world - base.translation)) * robot.mass
     return worst(scene.dynamics.mass_matrix[3:6, :3] - moment) / robot.mass
@@ -126,13 +53,13 @@ def _centre_of_mass(robot: RobotModel, seed: int) -> float:
 
 def _momentum_map(robot: RobotModel, seed: int) -> float:
     """A_G v of the tick's recursion against the sum over the links."""
-    scene, links, _ = _scene(robot, seed)
+    scene, links, _ = by_links(robot, seed)
     return worst(scene.dynamics.centroidal_map @ scene.state.v - links.momentum)
 
 
 def _map_of_links(robot: RobotModel, seed: int) -> float:
     """X_G^T I J against the base rows of the mass matrix, taken about the CoM."""
-    scene, links, data = _scene(robot, seed)
+    scene, links, data = by_links(robot, seed)
     about_com = pin.SE3(data.oMi[1].rotation, data.oMi[1].translation - links.com_in_world)
     expected = about_com.toDualActionMatrix() @ scene.dynamics.mass_matrix[:6]
     return worst(links.centroidal_map - expected)
@@ -140,7 +67,7 @@ def _map_of_links(robot: RobotModel, seed: int) -> float:
 
 def _system_map(robot: RobotModel, seed: int) -> float:
     """A = I J, row by row of each link, through X_G^T to A_G v: against the tick's recursion."""
-    scene, links, _ = _scene(robot, seed)
+    scene, links, _ = by_links(robot, seed)
     jacobian = links.system_jacobian.reshape(len(links.inertias), 6, -1)
     system = (links.inertias @ jacobian).reshape(-1, robot.nv)
     return worst(
@@ -164,60 +91,6 @@ _AT = "robot.model.RobotModel.at"
 _TEST = "tests/momentum/test_centroidal.py::test_"
 
 EQUATIONS = (
-    Equation(
-        3,
-        "v_i = X_i v_p(i) + Phi_i q_i'",
-        _LINKS,
-        f"{_TEST}link_velocities",
-        _link_velocities,
-        1e-11,
-        "SI",
-    ),
-    Equation(
-        4,
-        "X_i = [[E, -E S(p)], [0, E]]",
-        "momentum.centroidal.motion_transform",
-        f"{_TEST}link_transforms_in_the_chapters_order",
-        _transforms,
-        1e-12,
-        "SI",
-    ),
-    *(
-        Equation(number, says, _LINKS, f"{_TEST}system_jacobian", _system_jacobian, 1e-11, "SI")
-        for number, says in (
-            (5, "v = J q', all links at once"),
-            (6, "v = [v_1; v_2; ...; v_N]"),
-            (7, "J = [J_1; J_2; ...; J_N]"),
-        )
-    ),
-    Equation(8, "h_i = I_i v_i", _LINKS, f"{_TEST}link_momenta", _link_momenta, 1e-11, "SI"),
-    Equation(
-        9,
-        "I_i = [[m 1, m S(c)^T], [m S(c), I_o]]",
-        "momentum.centroidal.spatial_inertia",
-        f"{_TEST}link_inertias_in_the_chapters_order",
-        _link_inertias,
-        1e-11,
-        "J",
-    ),
-    Equation(
-        10,
-        "I_o = I_cm + m S(c) S(c)^T",
-        "momentum.centroidal.spatial_inertia",
-        f"{_TEST}link_inertias_in_the_chapters_order",
-        _parallel_axes,
-        1e-12,
-        "kg m^2",
-    ),
-    Equation(
-        11,
-        "h = blkdiag(I_i) v",
-        _LINKS,
-        f"{_TEST}link_momenta",
-        _system_momentum,
-        1e-11,
-        "SI",
-    ),
     Equation(
         12,
         "h_G = sum X_Gi^T h_i",
