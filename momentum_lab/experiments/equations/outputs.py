@@ -10,6 +10,7 @@ import pinocchio as pin
 from momentum_lab.control.accelerations import contact_constraint
 from momentum_lab.control.controller import Reference
 from momentum_lab.control.outputs import (
+    AXES,
     LiftedSoles,
     Output,
     Spring,
@@ -112,14 +113,17 @@ def _rooted(robot: RobotModel, seed: int) -> float:
 
 
 def _system(robot: RobotModel, seed: int) -> float:
-    """A solved program: all rows by Pinocchio's recursion in m g, and the stance foot's acceleration."""
+    """A solved program: the CoM's row, all rows by Pinocchio's recursion in m g, and the stance foot's."""
     scene = standing(robot, seed, LEFT, SPEED)
     goal, gains = standing_goal(scene, LEFT), SlackGains()
     answer = SlackQP(robot, 1e-3).compute(scene.dynamics, goal, gains, 0.0, None)
     rows = inverse_dynamics_by_recursion(scene, answer.acceleration, answer.foot_wrench_admissible)
     rows[6:] -= answer.torque
     still, target = contact_constraint(scene.dynamics, LEFT, goal, gains.contact_damping)
-    return worst(rows / scene.weight, still @ answer.acceleration - target)
+    com = outputs_on_one_leg(scene, goal, gains)[0]
+    slack = np.array([answer.slack[f"com {axis}"] for axis in AXES])
+    commanded = com.jacobian @ answer.acceleration + com.bias
+    return worst(commanded + slack - com.desired, rows / scene.weight, still @ answer.acceleration - target)
 
 
 _OUTPUTS = "control.outputs.com_output"
