@@ -18,6 +18,7 @@ import pytest
 from momentum_lab.cli import equations as command
 from momentum_lab.cli import main
 from momentum_lab.control import desired, slack_qp
+from momentum_lab.errors import SolverError
 from momentum_lab.experiments import equations as catalog
 from momentum_lab.experiments.equations import (
     EQUATIONS,
@@ -259,6 +260,19 @@ class TestCommand:
         output = capsys.readouterr()
         assert output.out == ""
         assert output.err.startswith("momentum-lab: --robot: got nobody; allowed: one of g1, ")
+        assert output.err.count("\n") == 1
+
+    def test_a_controller_without_an_answer_is_one_line(self, capsys, monkeypatch):
+        """Exit code 1: a solver that finds nothing is no bad input."""
+
+        def no_answer(problem):
+            raise SolverError("no minimum")
+
+        monkeypatch.setattr(slack_qp, "solve", no_answer)
+        assert main(["equations"]) == 1
+        output = capsys.readouterr()
+        assert output.out == ""
+        assert output.err.startswith("momentum-lab: Eqs. 47, 61 and 62 on TALOS: no minimum")
         assert output.err.count("\n") == 1
 
     def test_a_record_says_everything(self):

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from momentum_lab.control.accelerations import contact_constraint
-from momentum_lab.control.controller import Reference
+from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.outputs import (
     AXES,
     LiftedSoles,
@@ -21,6 +21,7 @@ from momentum_lab.control.outputs import (
 )
 from momentum_lab.control.slack_qp import SlackGains, SlackQP
 from momentum_lab.control.stance_motion import stance_motion
+from momentum_lab.errors import SolverError
 from momentum_lab.experiments.equations.equation import Equation
 from momentum_lab.experiments.equations.scenes import (
     Scene,
@@ -50,6 +51,23 @@ def outputs_on_one_leg(scene: Scene, goal: Reference, gains: SlackGains) -> list
         sole_output(dynamics, 1, lifted, body, gains.swing_weight),
         posture_output(dynamics, goal, robot.upper_body, body, gains.posture_weight),
     ]
+
+
+def least_slack(scene: Scene, goal: Reference, gains: SlackGains) -> ControlOutput:
+    """What the controller of section 5.2 answers.
+
+    Raises:
+        SolverError: it holds its posture instead.
+    """
+    answer = SlackQP(scene.robot, 1e-3).compute(scene.dynamics, goal, gains, 0.0, None)
+    if answer.failure is not None:
+        raise SolverError(f"Eqs. 47, 61 and 62 on {scene.robot.spec.title}: {answer.failure}")
+    return answer
+
+
+def com_slack(answer: ControlOutput) -> np.ndarray:
+    """The CoM's slack (3,), m/s^2."""
+    return np.array([answer.slack[f"com {axis}"] for axis in AXES])
 
 
 def _stacked(parts: Sequence[np.ndarray]) -> np.ndarray:
@@ -116,12 +134,12 @@ def _system(robot: RobotModel, seed: int) -> float:
     """A solved program: the CoM's row, all rows by Pinocchio's recursion in m g, and the stance foot's."""
     scene = standing(robot, seed, LEFT, SPEED)
     goal, gains = standing_goal(scene, LEFT), SlackGains()
-    answer = SlackQP(robot, 1e-3).compute(scene.dynamics, goal, gains, 0.0, None)
+    answer = least_slack(scene, goal, gains)
     rows = inverse_dynamics_by_recursion(scene, answer.acceleration, answer.foot_wrench_admissible)
     rows[6:] -= answer.torque
     still, target = contact_constraint(scene.dynamics, LEFT, goal, gains.contact_damping)
     com = outputs_on_one_leg(scene, goal, gains)[0]
-    slack = np.array([answer.slack[f"com {axis}"] for axis in AXES])
+    slack = com_slack(answer)
     commanded = com.jacobian @ answer.acceleration + com.bias
     return worst(commanded + slack - com.desired, rows / scene.weight, still @ answer.acceleration - target)
 

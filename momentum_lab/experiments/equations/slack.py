@@ -8,13 +8,13 @@ import numpy as np
 import pinocchio as pin
 
 from momentum_lab.control.controller import ControlOutput, Reference
-from momentum_lab.control.outputs import AXES, Output, least_squares, lightened
+from momentum_lab.control.outputs import Output, least_squares, lightened
 from momentum_lab.control.qp import QuadraticProgram, solve_reference
-from momentum_lab.control.slack_qp import SlackGains, SlackQP
+from momentum_lab.control.slack_qp import SlackGains
 from momentum_lab.control.stance_motion import StanceMotion, stance_motion
 from momentum_lab.control.stance_program import StanceBounds, StanceProgram
 from momentum_lab.experiments.equations.equation import Equation
-from momentum_lab.experiments.equations.outputs import LEFT, outputs_on_one_leg
+from momentum_lab.experiments.equations.outputs import LEFT, com_slack, least_slack, outputs_on_one_leg
 from momentum_lab.experiments.equations.scenes import Scene, standing, standing_goal, worst
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.robot.model import RobotModel
@@ -43,7 +43,7 @@ def _goal(scene: Scene) -> Reference:
 def _solved(robot: RobotModel, seed: int) -> tuple[Scene, Reference, ControlOutput]:
     scene = standing(robot, seed, LEFT)
     goal = _goal(scene)
-    return scene, goal, SlackQP(robot, 1e-3).compute(scene.dynamics, goal, _GAINS, 0.0, None)
+    return scene, goal, least_slack(scene, goal, _GAINS)
 
 
 def _slack(robot: RobotModel, seed: int) -> float:
@@ -51,9 +51,8 @@ def _slack(robot: RobotModel, seed: int) -> float:
     scene, goal, answer = _solved(robot, seed)
     data, now = robot.model.createData(), scene.dynamics
     pin.centerOfMass(robot.model, data, scene.state.q, scene.state.v, answer.acceleration)
-    slack = np.array([answer.slack[f"com {axis}"] for axis in AXES])
     wanted = _GAINS.com_stiffness * (goal.com - now.com_in_world) - _GAINS.com_damping * now.com_velocity
-    return worst(data.acom[0] + slack - wanted)
+    return worst(data.acom[0] + com_slack(answer) - wanted)
 
 
 def _minimum(robot: RobotModel, seed: int) -> float:
