@@ -119,7 +119,7 @@ BAD_VALUES = [
     ("list", "list: got nothing; allowed: robots, controllers, scenarios, lessons, gains"),
     ("list cats", "list: got cats; allowed: robots, controllers, scenarios, lessons, gains"),
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
-    ("fly", "command: got fly; allowed: app, run, list, bench"),
+    ("fly", "command: got fly; allowed: app, run, list, equations, bench"),
 ]
 
 
@@ -138,6 +138,7 @@ def test_bad_value_is_one_line_that_names_it(words: str, message: str, capsys: O
             "--scenario: got nope; allowed: one of one-leg, outside-the-foot, push-backward, ",
         ),
         ("app --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
+        ("equations --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
         ("run stand --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
         ("run stand --robot /", "--robot: got /; allowed: one of g1, icub, "),
         ("run stand --set magic=1", "--set: got magic; allowed: one of linear_damping, "),

@@ -1,8 +1,8 @@
-"""The command line: momentum-lab app | run | list | bench.
+"""The command line: momentum-lab app | run | list | equations | bench.
 
 Exit codes: 0 the command did what was asked (a robot that falls is a result, not an error), 1 something broke
-down on the way, 2 bad input, 130 stopped by Ctrl+C. Bad input is one line on stderr and nothing on stdout:
-`momentum-lab: ARGUMENT: got GIVEN; allowed: ALLOWED`.
+down on the way or an equation does not hold, 2 bad input, 130 stopped by Ctrl+C. Bad input is one line on
+stderr and nothing on stdout: `momentum-lab: ARGUMENT: got GIVEN; allowed: ALLOWED`.
 """
 
 from __future__ import annotations
@@ -73,6 +73,10 @@ def _imported(name: str) -> Callable[[Namespace], int]:
         from momentum_lab.cli.listing import list_things
 
         return list_things
+    if name == "equations":
+        from momentum_lab.cli.equations import equations
+
+        return equations
     from momentum_lab.cli.bench import bench
 
     return bench

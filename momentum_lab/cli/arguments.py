@@ -13,7 +13,7 @@ from momentum_lab.errors import InputError
 from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
 from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 
-COMMANDS = ("app", "run", "list", "bench")
+COMMANDS = ("app", "run", "list", "equations", "bench")
 KINDS = ("robots", "controllers", "scenarios", "lessons", "gains")
 _MAX_PORT = 65535
 _MAX_BENCH_SECONDS, _MAX_BENCH_MINUTES = 600.0, 60.0
@@ -128,6 +128,7 @@ def _parser() -> _Parser:
         ("app", "open the lab in the browser", _app_arguments),
         ("run", "run a scenario without a screen", _run_arguments),
         ("list", "what there is: robots, controllers, scenarios, lessons, gains", _list_arguments),
+        ("equations", "how exactly the chapter's equations hold on a robot", _equations_arguments),
         ("bench", "how fast the lab is on this machine", _bench_arguments),
     ):
         command: Any = commands.add_parser(name, help=help, description=f"{help[0].upper()}{help[1:]}.")
@@ -222,6 +223,11 @@ def _choice_arguments(parser: _Parser) -> None:
 def _list_arguments(parser: _Parser) -> None:
     parser.add_argument("kind", nargs="?", default="", metavar="|".join(KINDS), help="what to list")
     parser.add_argument("--controller", metavar="C", default="computed-torque", help="whose gains to list")
+    parser.add_argument("--json", action="store_true", help="print a JSON array")
+
+
+def _equations_arguments(parser: _Parser) -> None:
+    parser.add_argument("--robot", default="talos", metavar="R", help="a name, or a robot's .toml file")
     parser.add_argument("--json", action="store_true", help="print a JSON array")
 
 

@@ -146,7 +146,7 @@ class ComputedTorque:
             feet.wrench,
         )
         if gains.feedback_stiffness or gains.feedback_damping:
-            torque += _feedback(dynamics, memory, gains)
+            torque += joint_feedback(dynamics, memory, gains)
         return ControlOutput(
             torque=torque,
             acceleration=acceleration,
@@ -297,8 +297,19 @@ def _weights(gains: ComputedTorqueGains) -> MotionWeights:
     )
 
 
-def _feedback(dynamics: Dynamics, command: JointCommand, gains: ComputedTorqueGains) -> np.ndarray:
-    """tau_fb = Gamma_p (theta* - theta) + Gamma_d (theta*' - theta') (na,), N m (Eqs. 35, 36)."""
+def joint_feedback(dynamics: Dynamics, command: JointCommand, gains: ComputedTorqueGains) -> np.ndarray:
+    """What is added to the computed torque where joints do not follow their command.
+
+    tau_fb = Gamma_p (theta* - theta) + Gamma_d (theta*' - theta') (Eq. 36), in tau_s = tau_ff + tau_fb (Eq. 35).
+
+    Args:
+        dynamics: the state with everything computed.
+        command: theta* and its rate.
+        gains: hold Gamma_p and Gamma_d.
+
+    Returns:
+        tau_fb (na,), N m.
+    """
     state = dynamics.state
     return gains.feedback_stiffness * (command.angle - state.q[7:]) + gains.feedback_damping * (
         command.rate - state.v[6:]

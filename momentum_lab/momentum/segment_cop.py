@@ -53,6 +53,22 @@ def polygon_edges(polygon: np.ndarray) -> Edges:
     return Edges(normal, np.einsum("ki,ki->k", normal, polygon))
 
 
+def link_moments(links: Segments, angular_acceleration: np.ndarray) -> np.ndarray:
+    """The moment about its own CoM that turns each link.
+
+    tau_i = I_i omega_i' + omega_i x I_i omega_i: Eqs. 50 (x) and 51 (y), with the full inertia and the
+    gyroscopic moment that they leave out.
+
+    Args:
+        links: all links with mass.
+        angular_acceleration: omega_i', world axes (N, 3), rad/s^2.
+
+    Returns:
+        tau_i, world axes (N, 3), N m.
+    """
+    return np.einsum("nij,nj->ni", links.inertia, angular_acceleration) + _gyroscopic(links)
+
+
 def segment_cop(links: Segments, acceleration: np.ndarray, ground_height: float = 0.0) -> np.ndarray:
     """The CoP from the accelerations of all links.
 
@@ -69,7 +85,7 @@ def segment_cop(links: Segments, acceleration: np.ndarray, ground_height: float 
         p (2,), m.
     """
     linear, angular = acceleration.reshape(6, -1)[:3].T, acceleration.reshape(6, -1)[3:].T
-    moment = (np.einsum("nij,nj->ni", links.inertia, angular) + _gyroscopic(links)).sum(0)
+    moment = link_moments(links, angular).sum(0)
     height = links.position[:, 2] - ground_height
     force = links.mass * (linear[:, 2] + GRAVITY)
     x = force @ links.position[:, 0] - (links.mass * height) @ linear[:, 0] - moment[1]

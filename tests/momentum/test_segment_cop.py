@@ -9,6 +9,7 @@ from momentum_lab.momentum.ground import cop_from_momentum_rate
 from momentum_lab.momentum.segment_cop import (
     Edges,
     centroidal_rows,
+    link_moments,
     polygon_edges,
     rectangle_edges,
     segment_cop,
@@ -16,6 +17,7 @@ from momentum_lab.momentum.segment_cop import (
 )
 from momentum_lab.momentum.segments import segments
 from momentum_lab.momentum.support import support_margin, support_polygon
+from momentum_lab.robot.state import State
 from tests.conftest import assert_close
 
 G = 9.81
@@ -45,6 +47,21 @@ def test_cop_of_the_links_is_that_of_the_momentum_rate(robot, cases):
         expected = cop_from_momentum_rate(rate, dynamics.com_in_world, robot.mass, GROUND)
         found = segment_cop(links, links.stacked_acceleration(a), GROUND)
         assert_close(found, expected, 1e-8 * max(1.0, np.abs(expected).max()))
+
+
+def test_moments_of_the_links_change_their_spins(robot, cases):
+    """Eqs. 50, 51 with their gyroscopic moment: d/dt (I_i omega_i), by central differences along the motion."""
+    eps = 1e-5
+
+    def spins(state, a, time):
+        q = robot.integrate(state.q, time * (state.v + 0.5 * time * a))
+        moved = segments(robot, State(q, state.v + time * a))
+        return np.einsum("nij,nj->ni", moved.inertia, moved.spin)
+
+    for links, dynamics, a, _ in cases[:10]:
+        numeric = (spins(dynamics.state, a, eps) - spins(dynamics.state, a, -eps)) / (2 * eps)
+        found = link_moments(links, links.stacked_acceleration(a).reshape(6, -1)[3:].T)
+        assert_close(found, numeric, 1e-5)
 
 
 def test_without_the_gyroscopic_moment_it_is_not(robot, cases):

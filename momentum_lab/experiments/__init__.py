@@ -1,0 +1,1 @@
+"""What the lab says about itself: the chapter's equations, measured."""
