@@ -25,7 +25,7 @@ def compiled(signature: str) -> Callable[[FunctionT], FunctionT]:
 
     Sums may be reordered into vector registers; NaN and infinity keep their meaning.
     """
-    return numba.njit(signature, cache=_CACHED, error_model="numpy", fastmath={"reassoc", "contract"})  # type: ignore[no-any-return]
+    return numba.njit(signature, cache=_CACHED, error_model="numpy", fastmath={"reassoc", "contract"})
 
 
 def _cache_folder() -> Path:

@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
-from momentum_lab.compiled import compiled
 from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute
+from momentum_lab.compiled import compiled
 
 _MATRIX, _VECTOR = "f8[:, ::1]", "f8[::1]"
 

@@ -21,9 +21,9 @@ from functools import lru_cache
 import numpy as np
 import pinocchio as pin
 
+from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute, solved
 from momentum_lab.compiled import compiled
 from momentum_lab.errors import SimulationError
-from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute, solved
 
 _MATRIX, _VECTOR = "f8[:, ::1]", "f8[::1]"
 
