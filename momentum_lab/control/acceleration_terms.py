@@ -126,7 +126,8 @@ def momentum_and_pelvis(
 
 
 @compiled(
-    f"Tuple(({_MATRIX}, {_VECTOR}))(i8[::1], f8[:, :, ::1], {_MATRIX}, {_MATRIX}, f8[:, :, ::1], {_VECTOR}, {_VECTOR}, f8)"
+    f"Tuple(({_MATRIX}, {_VECTOR}))"
+    f"(i8[::1], f8[:, :, ::1], {_MATRIX}, {_MATRIX}, f8[:, :, ::1], {_VECTOR}, {_VECTOR}, f8)"
 )
 def standing_feet(
     stance: np.ndarray,

@@ -55,7 +55,7 @@ class Contacts:
     frame_jacobian: np.ndarray
     spread: np.ndarray
     gap: np.ndarray
-    friction: tuple[float, ...]
+    friction: np.ndarray
 
     @property
     def jacobian(self) -> np.ndarray:
@@ -104,34 +104,46 @@ def solve_contact(
     Raises:
         SimulationError: H is not positive definite, that is: the state is not finite any more.
     """
+    answer = resting(
+        mass_matrix,
+        free_impulse,
+        velocity,
+        contacts.frame_jacobian,
+        contacts.spread,
+        contacts.gap,
+        contacts.friction,
+        timestep,
+    )
+    if answer[-1] <= _PRECISION:
+        return ContactSolution(*answer, iterations=0)
+    return _sliding(mass_matrix, free_impulse, velocity, contacts, closing_speed(contacts.gap, timestep))
+
+
+def _sliding(
+    mass_matrix: np.ndarray,
+    free_impulse: np.ndarray,
+    velocity: np.ndarray,
+    contacts: Contacts,
+    closing: np.ndarray,
+) -> ContactSolution:
+    """The same by a solver, for points that slide, lift, or come to rest under other impulses than the smallest."""
     factor = mass_matrix.copy()
     if not factorize(factor):
         raise SimulationError(
             "the mass matrix is not positive definite: the state has left the finite numbers"
         )
-    if not contacts.gap.size:
-        free_velocity = velocity + solved(factor, free_impulse.reshape(-1, 1)).ravel()
-        return ContactSolution(free_velocity, np.zeros((0, 3)), np.zeros((0, 6)), 0.0, 0)
     free_velocity, half, coupling, drift = contact_problem(
         factor, free_impulse, velocity, contacts.frame_jacobian
     )
-    closing = closing_speed(contacts.gap, timestep)
-    impulse, residual = sticking_impulse(
-        coupling, drift, contacts.spread, closing, _coefficients(contacts.friction)
-    )
-    iterations = 0
-    if not residual <= _PRECISION:
-        solver = _solve_cones(coupling, drift, closing, contacts)
-        impulse = solver.getPrimalSolution().copy()  # read-only
-        residual = float(solver.getAbsoluteConvergenceResidual())
-        iterations = int(solver.getIterationCount())
+    solver = _solve_cones(coupling, drift, closing, contacts)
+    impulse = solver.getPrimalSolution().copy()  # read-only
     velocity, frame_impulse = moved(factor, half, free_velocity, contacts.spread, impulse)
     return ContactSolution(
         velocity=velocity,
         impulse=impulse.reshape(-1, 3),
         frame_impulse=frame_impulse,
-        residual=residual,
-        iterations=iterations,
+        residual=float(solver.getAbsoluteConvergenceResidual()),
+        iterations=int(solver.getIterationCount()),
     )
 
 
@@ -254,6 +266,41 @@ def closing_speed(gap: np.ndarray, timestep: float) -> np.ndarray:
     return speed
 
 
+@compiled(
+    f"Tuple(({_VECTOR}, {_MATRIX}, {_MATRIX}, f8))"
+    f"({_MATRIX}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_VECTOR}, f8)"
+)
+def resting(
+    mass_matrix: np.ndarray,
+    free_impulse: np.ndarray,
+    velocity: np.ndarray,
+    frame_jacobian: np.ndarray,
+    spread: np.ndarray,
+    gap: np.ndarray,
+    friction: np.ndarray,
+    timestep: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """The end of a step in which all points come to rest, or in which there are none: all in one call.
+
+    Shapes and units of the arguments are those of `solve_contact` and `Contacts`.
+
+    Returns:
+        Velocity (nv,), point impulses (n, 3), frame impulses (B, 6) and residual, see `ContactSolution`; the
+        residual is NaN if H is not positive definite or the points do not come to rest so.
+    """
+    points = len(gap)
+    factor = mass_matrix.copy()
+    if not factorize(factor):
+        return velocity, np.zeros((points, 3)), np.zeros((len(frame_jacobian) // 6, 6)), np.nan
+    free_velocity, half, coupling, drift = contact_problem(factor, free_impulse, velocity, frame_jacobian)
+    if not points:
+        return free_velocity, np.zeros((0, 3)), np.zeros((0, 6)), 0.0
+    closing = closing_speed(gap, timestep)
+    impulse, residual = sticking_impulse(coupling, drift, spread, closing, friction)
+    end, frame_impulse = moved(factor, half, free_velocity, spread, impulse)
+    return end, impulse.reshape(-1, 3), frame_impulse, residual
+
+
 def _solve_cones(
     coupling: np.ndarray, drift: np.ndarray, closing: np.ndarray, contacts: Contacts
 ) -> pin.ADMMContactSolver:
@@ -267,13 +314,9 @@ def _solve_cones(
     solver.setAbsolutePrecision(precision)
     solver.setRelativePrecision(1e-3 * precision)
     solver.setMaxIterations(_MAX_ITERATIONS)
-    solver.solve(pin.DelassusOperatorDense(delassus), drift, _cones(contacts.friction), _no_compliance(size))
+    cones = _cones(tuple(contacts.friction.tolist()))
+    solver.solve(pin.DelassusOperatorDense(delassus), drift, cones, _no_compliance(size))
     return solver
-
-
-@lru_cache(maxsize=64)
-def _coefficients(friction: tuple[float, ...]) -> np.ndarray:
-    return np.array(friction)
 
 
 @lru_cache(maxsize=64)

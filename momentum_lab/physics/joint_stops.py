@@ -60,7 +60,7 @@ def joint_stops(robot: RobotModel, dynamics: Dynamics, timestep: float) -> Joint
 @compiled("boolean(f8[::1], f8[::1], f8[::1])")
 def within_limits(q: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> bool:
     """Whether no joint angle of a configuration q (nq,) is beyond its limits (na,), rad; NaN is not beyond."""
-    for joint in range(lower.size):
+    for joint in range(lower.size):  # noqa: SIM110 - numba compiles no all()
         if q[7 + joint] < lower[joint] or q[7 + joint] > upper[joint]:
             return False
     return True
