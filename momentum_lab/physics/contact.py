@@ -21,7 +21,7 @@ from functools import lru_cache
 import numpy as np
 import pinocchio as pin
 
-from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute, solved
+from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute, gram, solved
 from momentum_lab.compiled import compiled
 from momentum_lab.errors import SimulationError
 
@@ -151,7 +151,7 @@ def _sliding(
 def contact_problem(
     factor: np.ndarray, free_impulse: np.ndarray, velocity: np.ndarray, frame_jacobian: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Velocity without contact, L^-1 J_f^T, and C and d of the frames' velocities C w + d under impulses w.
+    """Velocity without contact, J_f L^-T, and C and d of the frames' velocities C w + d under impulses w.
 
     Args:
         factor: L with L L^T = H (nv, nv).
@@ -160,24 +160,14 @@ def contact_problem(
         frame_jacobian: J_f (6 B, nv).
 
     Returns:
-        v + H^-1 p (nv,), L^-1 J_f^T (nv, 6 B), C = J_f H^-1 J_f^T (6 B, 6 B), d = J_f (v + H^-1 p) (6 B,).
+        v + H^-1 p (nv,), J_f L^-T (6 B, nv), C = J_f H^-1 J_f^T (6 B, 6 B), d = J_f (v + H^-1 p) (6 B,).
     """
-    size, frames = velocity.size, len(frame_jacobian)
-    columns = np.empty((size, frames + 1))
-    for i in range(size):
-        for j in range(frames):
-            columns[i, j] = frame_jacobian[j, i]
-        columns[i, frames] = free_impulse[i]
-    forward_substitute(factor, columns)
-    half, free_velocity = columns[:, :frames].copy(), columns[:, frames].copy()
+    rows = np.concatenate((frame_jacobian, free_impulse.copy().reshape(1, -1)))
+    forward_substitute(factor, rows)
+    half, free_velocity = rows[:-1], rows[-1].copy()
     backward_substitute(factor, free_velocity)
     free_velocity += velocity
-    coupling = np.zeros((frames, frames))
-    for i in range(size):
-        for j in range(frames):
-            for k in range(frames):
-                coupling[j, k] += half[i, j] * half[i, k]
-    return free_velocity, half, coupling, frame_jacobian @ free_velocity
+    return free_velocity, half, gram(half), frame_jacobian @ free_velocity
 
 
 @compiled(f"Tuple(({_VECTOR}, {_MATRIX}))({_MATRIX}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_VECTOR})")
@@ -192,13 +182,13 @@ def moved(
 
     Args:
         factor: L with L L^T = H (nv, nv).
-        half: L^-1 J_f^T (nv, 6 B).
+        half: J_f L^-T (6 B, nv).
         free_velocity: v + H^-1 p (nv,).
         spread: S (3 n, 6 B).
         impulse: lambda (3 n,), N s.
     """
     frame_impulse = impulse @ spread
-    change = half @ frame_impulse
+    change = frame_impulse @ half
     backward_substitute(factor, change)
     return free_velocity + change, frame_impulse.reshape(-1, 6)
 
@@ -224,21 +214,16 @@ def sticking_impulse(
         lambda (3 n,), N s, and the largest entry of S (C w + d) + c, m/s; NaN if lambda does not do.
     """
     rows, frames = spread.shape
-    gram, mean = np.zeros((frames, frames)), np.zeros((frames, 1))
-    for i in range(rows):
-        for j in range(frames):
-            if i % 3 == 2:
-                mean[j, 0] += spread[i, j] * closing[i // 3]
-            for k in range(frames):
-                gram[j, k] += spread[i, j] * spread[i, k]
-    factor = coupling.copy()
-    if not (factorize(gram) and factorize(factor)):
+    columns = np.ascontiguousarray(spread.T)
+    square, factor, mean = gram(columns), coupling.copy(), np.zeros(frames)
+    if not (factorize(square) and factorize(factor)):
         return np.zeros(rows), np.nan
-    needed = solved(gram, mean)
-    needed[:, 0] = -drift - needed[:, 0]
-    frame_impulse = solved(factor, needed)
-    left = coupling @ frame_impulse[:, 0].copy() + drift
-    impulse = spread @ solved(gram, frame_impulse)[:, 0].copy()
+    for j in range(frames):
+        for point in range(rows // 3):
+            mean[j] += columns[j, 3 * point + 2] * closing[point]
+    frame_impulse = solved(factor, -drift - solved(square, mean))
+    left = coupling @ frame_impulse + drift
+    impulse = spread @ solved(square, frame_impulse)
     residual = 0.0
     for point in range(rows // 3):
         x, y, normal = impulse[3 * point : 3 * point + 3]
