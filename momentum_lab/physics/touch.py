@@ -131,7 +131,7 @@ def placed_soles(
             position[foot], origin[foot], plane_axes[foot]
         )
     return (
-        jacobian[feet].reshape(6 * bodies, -1),
+        jacobian[feet].reshape(6 * bodies, jacobian.shape[2]),
         spread,
         gap[feet].ravel(),
         np.repeat(friction[feet], 4),
