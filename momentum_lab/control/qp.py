@@ -27,7 +27,7 @@ _UNBOUNDED = 1e30
 _NOTHING = np.zeros(0, dtype=bool)
 Numbers = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 # An answer is accepted when every condition of optimality holds to this, relative to the problem's own size.
-_CERTIFIED = 1e-6
+CERTIFIED = 1e-6
 # Clarabel's own 1e-8 leaves flat directions of Eq. 34 wrong in the fifth digit.
 _REFERENCE = 1e-11
 
@@ -118,7 +118,7 @@ def solve(problem: QuadraticProgram) -> Solution:
     """
     for road in (_on_equalities, _active_set):
         solution = road(problem)
-        if solution.certificate.worst <= _CERTIFIED:
+        if solution.certificate.worst <= CERTIFIED:
             return solution
     raise SolverError(f"the solver's answer misses optimality by {solution.certificate.worst:.1e}")
 
