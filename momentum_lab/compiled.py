@@ -9,6 +9,9 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
+import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,7 +20,10 @@ import numba
 
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 
-_HERE = Path(__file__).parent
+_PACKAGE = Path(__file__).parent
+_MARK = b"import compiled\n"
+# Compiled code of other versions is thrown away when it is older than this, s.
+_KEPT = 30 * 24 * 3600.0
 
 
 def compiled(signature: str) -> Callable[[FunctionT], FunctionT]:
@@ -28,25 +34,52 @@ def compiled(signature: str) -> Callable[[FunctionT], FunctionT]:
     return numba.njit(signature, cache=_CACHED, error_model="numpy", fastmath={"reassoc", "contract"})
 
 
-def _cache_folder() -> Path:
-    """A folder that changes with any file of this package: numba does not see a change in what a function calls."""
-    stamps = [
-        (file.name, file.stat().st_mtime_ns, file.stat().st_size) for file in sorted(_HERE.rglob("*.py"))
-    ]
-    version = hashlib.sha256(repr((str(_HERE), numba.__version__, stamps)).encode()).hexdigest()[:16]
-    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(home) / "momentum-lab" / version
+def version_of(sources: dict[str, bytes]) -> str:
+    """A name for the compiled code of some files, by their names and contents.
+
+    Numba looks at the file of a function only, not at those of the functions it calls; this looks at all.
+    """
+    parts = (numba.__version__, sys.version, *(f"{name}\0{hash_of(text)}" for name, text in sources.items()))
+    return hash_of("\0".join(parts).encode())[:16]
+
+
+def hash_of(text: bytes) -> str:
+    """SHA-256 in hexadecimal digits."""
+    return hashlib.sha256(text).hexdigest()
+
+
+def _sources() -> dict[str, bytes]:
+    """The files of this package that compile something, by name."""
+    texts = {str(path.relative_to(_PACKAGE)): path.read_bytes() for path in sorted(_PACKAGE.rglob("*.py"))}
+    return {name: text for name, text in texts.items() if _MARK in text or name == Path(__file__).name}
 
 
 def _use_cache() -> bool:
-    """Whether compiled code can be kept between runs."""
+    """Point numba to a folder that keeps compiled code between runs; whether there is one."""
     if not numba.config.CACHE_DIR:
-        numba.config.CACHE_DIR = str(_cache_folder())
+        home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "momentum-lab"
+        numba.config.CACHE_DIR = str(home / version_of(_sources()))
+    folder = Path(numba.config.CACHE_DIR)
     try:
-        Path(numba.config.CACHE_DIR).mkdir(parents=True, exist_ok=True)
+        if not folder.exists():
+            folder.mkdir(parents=True, exist_ok=True)
+            _announce()
+            _forget_old_versions(folder)
     except OSError:
         return False
-    return os.access(numba.config.CACHE_DIR, os.W_OK)
+    return os.access(folder, os.W_OK)
+
+
+def _announce() -> None:
+    """Tell a person at a terminal what the first start of a version waits for."""
+    if sys.stderr.isatty():
+        print("momentum-lab compiles its numerical loops: once, for about half a minute", file=sys.stderr)
+
+
+def _forget_old_versions(folder: Path) -> None:
+    for other in folder.parent.iterdir():
+        if other.is_dir() and time.time() - other.stat().st_mtime > _KEPT:
+            shutil.rmtree(other, ignore_errors=True)
 
 
 _CACHED = _use_cache()

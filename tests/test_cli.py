@@ -10,6 +10,7 @@ import re
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -19,6 +20,7 @@ import pytest
 from rich.console import Console
 from threadpoolctl import threadpool_info
 
+from momentum_lab.app.figures import AppMeasurement
 from momentum_lab.cli import listing, main, progress
 from momentum_lab.cli import run as run_command
 from momentum_lab.cli.arguments import parsed
@@ -29,6 +31,7 @@ from momentum_lab.recording import load_trace
 from momentum_lab.robot.catalog import robot_names
 from momentum_lab.scenario import Scenario, load_scenario, scenario_names
 from momentum_lab.session import Session
+from tests.app.test_figures import measurement
 from tests.test_summary import KEYS
 
 Output = pytest.CaptureFixture[str]
@@ -450,22 +453,41 @@ def test_app_is_not_served_for_a_robot_that_cannot_stand(
     assert served == []
 
 
-def test_bench_of_the_app_prints_what_was_measured(capsys: Output, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def measured_for(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """For how many seconds the app has been measured, without measuring it."""
     asked: list[float] = []
 
-    def measure_app(seconds: float) -> dict[str, float]:
+    def measure_app(seconds: float, report: Callable[[float], None]) -> AppMeasurement:
         asked.append(seconds)
-        return {"real_time_factor": 0.99, "drawings_per_second": 31.0}
+        report(1.0)
+        return measurement(drawings_per_second=29.0, memory_growth=None)
 
-    monkeypatch.setitem(sys.modules, "momentum_lab.app.bare_client", SimpleNamespace(measure_app=measure_app))
+    monkeypatch.setitem(sys.modules, "momentum_lab.app.measure", SimpleNamespace(measure_app=measure_app))
+    return asked
+
+
+def test_bench_of_the_app_prints_what_was_measured(capsys: Output, measured_for: list[float]) -> None:
     assert main(["bench", "--app", "--seconds", "3", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["app"] == {
-        "real_time_factor": 0.99,
-        "drawings_per_second": 31.0,
-    }
+    document = json.loads(capsys.readouterr().out)
+    assert document["app"]["drawings_per_second"] == 29.0
+    assert document["app"]["memory_growth"] is None
+    assert {figure["name"]: figure["reached"] for figure in document["figures"]}[
+        "drawings per second"
+    ] is False
     assert main(["bench", "--app"]) == 0
-    assert re.search(r"drawings per second\W+31", capsys.readouterr().out)
-    assert asked == [3.0, 20.0]
+    table = capsys.readouterr().out
+    assert re.search(r"drawings per second\W+29.0\W+at least 30\W+NO", table)
+    assert re.search(r"real-time factor\W+1.000\W+1.00 ± 0.01\W+yes", table)
+    assert main(["bench", "--app", "--minutes", "10"]) == 0
+    assert measured_for == [3.0, 20.0, 600.0]
+
+
+def test_bench_takes_its_time_once(capsys: Output, measured_for: list[float]) -> None:
+    line = refusal(capsys, "bench", "--app", "--minutes", "1", "--seconds", "3")
+    assert line == "--minutes: got 1; allowed: either --minutes or --seconds"
+    assert "from 0.1 to 60" in refusal(capsys, "bench", "--app", "--minutes", "0")
+    assert measured_for == []
 
 
 # All commands

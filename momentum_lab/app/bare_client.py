@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import re
 import time
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from multiprocessing.connection import Connection
 from types import TracebackType
 from typing import Any
 
@@ -17,35 +15,10 @@ import viser
 import zstandard
 from websockets.sync.client import ClientConnection, connect
 
-from momentum_lab.app.profile import TEST
-from momentum_lab.errors import ServerError
-from momentum_lab.scenario import Scenario, load_scenario
-
 # What the page says about simulated time.
 _SIMULATED = re.compile(r"simulated time <b>([0-9.]+) s</b>")
 # Messages that move something in the scene.
 _MOVING = frozenset({"SetPositionMessage", "SetOrientationMessage", "SceneNodeUpdateMessage"})
-# Settling before and between what is measured, s.
-_WARM_UP, _PUSH_EVERY = 2.0, 1.0
-
-
-@dataclass(frozen=True, slots=True)
-class AppMeasurement:
-    """How the app does with one client that reads as fast as it can.
-
-    Attributes:
-        seconds: how long was measured.
-        real_time_factor: simulated seconds per second, as the page tells it.
-        drawings_per_second: pictures of a moving robot received per second.
-        messages_per_drawing: how many things one picture changes.
-        first_picture: from opening the connection to the first picture of the robot, s.
-    """
-
-    seconds: float
-    real_time_factor: float
-    drawings_per_second: float
-    messages_per_drawing: float
-    first_picture: float
 
 
 @dataclass
@@ -54,6 +27,8 @@ class Received:
 
     Attributes:
         turned: how often each node of the scene was turned; a picture turns a node once.
+        pictures: when windows came in which the robot moves, s.
+        shown: since when each node of the scene that has not been hidden has been there, s.
         changes: how many things were moved, turned or changed in the scene.
         told: when the simulated time was last told, and what it was, s.
         kinds: how many messages of each type.
@@ -63,6 +38,8 @@ class Received:
     """
 
     turned: Counter[str] = field(default_factory=Counter)
+    pictures: list[float] = field(default_factory=list)
+    shown: dict[str, float] = field(default_factory=dict)
     changes: int = 0
     told: tuple[float, float] = (0.0, 0.0)
     kinds: Counter[str] = field(default_factory=Counter)
@@ -75,22 +52,44 @@ class Received:
         """Pictures of a moving robot: at least as many as the busiest joint was turned."""
         return max(self.turned.values(), default=0)
 
-    def take(self, messages: list[dict[str, Any]]) -> None:
-        """Count one window of messages."""
+    @property
+    def messages(self) -> int:
+        """Everything that has come."""
+        return self.kinds.total()
+
+    def take(self, messages: list[dict[str, Any]], now: float | None = None) -> None:
+        """Count one window of messages that came at a time; None: this very moment."""
+        now = time.perf_counter() if now is None else now
         for message in messages:
             self.kinds[message["type"]] += 1
             self.latest[message["type"]] = message
-            self.changes += message["type"] in _MOVING
-            if message["type"] == "SetOrientationMessage":
-                self.turned[message["name"]] += 1
-            properties = message.get("props") or {}
-            if message["type"] == "NotificationShowMessage":
-                self.notices.append(properties["body"])
-            if "label" in properties and "uuid" in message:
-                self.labels[properties["label"]] = message["uuid"]
-            told = _SIMULATED.search(str((message.get("updates") or {}).get("content", "")))
-            if told:
-                self.told = (time.perf_counter(), float(told.group(1)))
+            self._take_scene(message, now)
+            self._take_page(message, now)
+        if any(message["type"] == "SetOrientationMessage" for message in messages):
+            self.pictures.append(now)
+
+    def _take_scene(self, message: dict[str, Any], now: float) -> None:
+        kind = message["type"]
+        self.changes += kind in _MOVING
+        if kind == "SetOrientationMessage":
+            self.turned[message["name"]] += 1
+        if "props" in message and "name" in message:
+            self.shown[message["name"]] = now
+        if kind == "SetSceneNodeVisibilityMessage":
+            if message["visible"]:
+                self.shown.setdefault(message["name"], now)
+            else:
+                self.shown.pop(message["name"], None)
+
+    def _take_page(self, message: dict[str, Any], now: float) -> None:
+        properties = message.get("props") or {}
+        if message["type"] == "NotificationShowMessage":
+            self.notices.append(properties["body"])
+        if "label" in properties and "uuid" in message:
+            self.labels[properties["label"]] = message["uuid"]
+        told = _SIMULATED.search(str((message.get("updates") or {}).get("content", "")))
+        if told:
+            self.told = (now, float(told.group(1)))
 
 
 class BareClient:
@@ -135,13 +134,14 @@ class BareClient:
         return self.received
 
     def read_until(self, seen: Any, patience: float) -> Received:
-        """Take what comes until `seen(received)` holds.
+        """Take what comes until `seen(received)` holds; nothing, if it does already.
 
         Raises:
             TimeoutError: it does not hold in time.
         """
-        end = time.perf_counter() + patience
-        for messages in self._windows(end):
+        if seen(self.received):
+            return self.received
+        for messages in self._windows(time.perf_counter() + patience):
             self.received.take(messages)
             if seen(self.received):
                 return self.received
@@ -175,65 +175,6 @@ class BareClient:
         text = self._zstd.decompress(data[16 : 16 + packed], max_output_size=length)
         found: list[dict[str, Any]] = msgspec.msgpack.decode(text)["messages"]
         return found
-
-
-def measure_app(seconds: float = 10.0, scenario: Scenario | None = None) -> AppMeasurement:
-    """Serve the lab in a process of its own, push the robot every second from one bare client, and count.
-
-    Args:
-        seconds: how long to measure.
-        scenario: what the session starts with; None: standing Talos.
-
-    Raises:
-        ServerError: the lab does not start.
-    """
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe()
-    server = context.Process(target=_serve, args=(theirs, scenario or load_scenario("stand")))
-    server.start()
-    theirs.close()
-    try:
-        if not ours.poll(60.0):
-            raise ServerError("app", "no answer within 60 s", "a machine that can run it")
-        with BareClient(ours.recv()) as client:
-            return _measure(client, seconds)
-    finally:
-        ours.close()
-        server.join(10.0)
-        server.kill()
-
-
-def _measure(client: BareClient, seconds: float) -> AppMeasurement:
-    opened = time.perf_counter()
-    client.read_until(lambda received: "Push  (P)" in received.labels, 60.0)
-    first_picture = time.perf_counter() - opened
-    client.set_value("Push  (P)", True)
-    client.read(_WARM_UP)
-    received = client.received
-    drawings, changes, (then, simulated) = received.drawings, received.changes, received.told
-    start = time.perf_counter()
-    while time.perf_counter() - start < seconds:
-        client.set_value("Push  (P)", True)
-        client.read(min(_PUSH_EVERY, seconds - (time.perf_counter() - start)))
-    elapsed = time.perf_counter() - start
-    pictures = received.drawings - drawings
-    now, simulated_now = received.told
-    return AppMeasurement(
-        seconds=elapsed,
-        real_time_factor=(simulated_now - simulated) / (now - then),
-        drawings_per_second=pictures / elapsed,
-        messages_per_drawing=(received.changes - changes) / max(1, pictures),
-        first_picture=first_picture,
-    )
-
-
-def _serve(pipe: Connection, scenario: Scenario) -> None:
-    """The lab, until the pipe closes."""
-    from momentum_lab.app.server import LabServer
-
-    with LabServer(scenario, profile=TEST) as lab, pipe:
-        pipe.send(lab.url)
-        pipe.poll(None)
 
 
 def _camera() -> dict[str, Any]:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections import deque
 
+LATE = 5e-3
+"""A tick that begins later than this after it was due is a late one, s."""
+
 # What may be caught up after a short stall, s of simulated time; what is later than this never happens.
 _BACKLOG = 0.08
 # Over how long the real-time factor is measured, s.
@@ -15,6 +18,9 @@ class Pacer:
 
     Args:
         timestep: length of a tick, s.
+
+    Attributes:
+        late_ticks: how many ticks have begun late; those that were given up count too.
     """
 
     def __init__(self, timestep: float) -> None:
@@ -24,6 +30,7 @@ class Pacer:
         self._ticks = 0
         self._marks: deque[tuple[float, int]] = deque()
         self._factor = 0.0
+        self.late_ticks = 0
 
     def start(self, now: float, speed: float) -> None:
         """Let simulated time run from now on, at a fraction of real time."""
@@ -36,12 +43,14 @@ class Pacer:
         late = due - max(1, round(_BACKLOG / self._timestep))
         if late > 0:
             self._start += late * self._timestep / self._speed
+            self.late_ticks += late
             due -= late
         return due
 
-    def done(self, ticks: int) -> None:
-        """Some ticks have happened."""
-        self._ticks += ticks
+    def begin(self, now: float) -> None:
+        """A tick begins."""
+        self._ticks += 1
+        self.late_ticks += now - self._start - self._ticks * self._timestep / self._speed > LATE
 
     def wait(self, now: float) -> float:
         """How long until the next tick is due, s."""

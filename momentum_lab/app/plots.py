@@ -16,8 +16,10 @@ from momentum_lab.app.series import WINDOW, Curves, History
 from momentum_lab.recording import Layout
 from momentum_lab.robot.model import RobotModel
 
-# How often the plots are drawn, s.
-_PERIOD = 0.1
+# How often the plots are drawn, s; and how often while nothing in them changes but the time.
+_PERIOD, _RESTING = 0.1, 1.0
+# Values that differ by less than this part of a plot's least height look the same: a pixel.
+_SAME = 0.01
 _HEIGHT = 100
 _UNSEEN = 1e-5
 _AXIS = {"font": "10px sans-serif", "gap": 2, "ticks": {"size": 3}}
@@ -30,6 +32,10 @@ _KINDS: dict[str, tuple[Color, list[int]]] = {
 }
 
 
+# Every plot shows at least from minus this to this, in its unit.
+_SOFT = {"places": 12.0, "linear": 60.0, "angular": 30.0, "momenta": 6.0}
+
+
 class Plots:
     """The plots of one browser tab.
 
@@ -40,7 +46,7 @@ class Plots:
 
     def __init__(self, gui: viser.GuiApi, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
-        self._next = -math.inf
+        self._next = self._next_rest = -math.inf
         self._history: History | None = None
         self._direction = np.array([1.0, 0.0])
         self._places = _plot(
@@ -48,18 +54,20 @@ class Plots:
             "Points along the push (cm)",
             [_line(STYLES[name].label, STYLES[name].color) for name in _POINTS]
             + [_line("support", GREY, [3, 3]), _line("", GREY, [3, 3])],
-            soft=12.0,
+            soft=_SOFT["places"],
             bands=({"series": (6, 5), "fill": "rgba(110,110,110,0.10)"},),
         )
-        self._linear = _plot(gui, "Rate of linear momentum along the push (N)", _rates(), soft=60.0)
+        self._linear = _plot(
+            gui, "Rate of linear momentum along the push (N)", _rates(), soft=_SOFT["linear"]
+        )
         self._angular = _plot(
-            gui, "Rate of angular momentum about the axis across (N m)", _rates(), soft=30.0
+            gui, "Rate of angular momentum about the axis across (N m)", _rates(), soft=_SOFT["angular"]
         )
         self._momenta = _plot(
             gui,
             "Momentum: linear (N s), angular (kg m²/s)",
             [_line("linear, along the push", ORANGE), _line("angular, about the axis across", PURPLE)],
-            soft=6.0,
+            soft=_SOFT["momenta"],
         )
 
     def begin(self, robot: RobotModel, layout: Layout) -> None:
@@ -70,7 +78,7 @@ class Plots:
         """Empty the plots."""
         if self._history is not None:
             self._history.clear()
-        self._next = -math.inf
+        self._next = self._next_rest = -math.inf
 
     def along(self, direction: np.ndarray) -> None:
         """Show what happens along a direction (2,) from now on, the past included."""
@@ -80,8 +88,11 @@ class Plots:
         """Take new samples (n, width) and draw them when it is time."""
         if self._history is not None:
             self._history.add(rows)
-            if self._clock() >= self._next:
-                self.draw()
+            if self._clock() >= self._next and len(self._history):
+                curves = self._history.curves(self._direction)
+                self._next = self._clock() + _PERIOD
+                if self._clock() >= self._next_rest or not at_rest(curves):
+                    self._draw(curves)
 
     def draw(self) -> None:
         """Draw what there is."""
@@ -90,7 +101,10 @@ class Plots:
             self._draw(self._history.curves(self._direction))
 
     def _draw(self, curves: Curves) -> None:
+        self._next_rest = self._clock() + _RESTING
         x = _window(curves.time)
+        # A push that goes on would be filled from the last sample to the end of the window.
+        pushed = _framed(np.append(curves.pushed[:-1], 0.0))
         limits = [_held(_framed(limit)) for limit in curves.limits]
         columns = (
             (self._places, [_framed(curves.points[name]) for name in _POINTS] + limits),
@@ -99,7 +113,22 @@ class Plots:
             (self._momenta, [_framed(curves.momentum), _framed(curves.angular_momentum)]),
         )
         for plot, ys in columns:
-            plot.data = (x, *ys, _framed(curves.pushed))
+            plot.data = (x, *ys, pushed)
+
+
+def at_rest(curves: Curves) -> bool:
+    """Whether all curves are level lines through the whole window, so that only the time in them changes."""
+    if curves.time[-1] - curves.time[0] < WINDOW - _PERIOD:
+        return False  # the lines still grow
+    lines = {
+        "places": [*curves.points.values(), *curves.limits],
+        "linear": list(curves.linear.values()),
+        "angular": list(curves.angular.values()),
+        "momenta": [curves.momentum, curves.angular_momentum],
+    }
+    return not curves.pushed.any() and all(
+        np.ptp(values) < _SAME * _SOFT[plot] for plot, ys in lines.items() for values in ys
+    )
 
 
 def _window(times: np.ndarray) -> np.ndarray:

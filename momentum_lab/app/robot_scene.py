@@ -31,6 +31,7 @@ class RobotScene:
         self._data = self._model.createData()
         pin.forwardKinematics(self._model, self._data, q)
         self._drawn = q.copy()
+        self._positions: dict[int, tuple[float, ...]] = {}
         self._frames = self._add_frames(client)
         self._meshes = [
             client.scene.add_mesh_simple(
@@ -62,7 +63,7 @@ class RobotScene:
         self._drawn[7 + angles] = q[7 + angles]
         pin.forwardKinematics(self._model, self._data, self._drawn)
         for joint in moved:
-            place(self._frames[joint], self._data.liMi[joint])
+            self._place(joint, self._frames[joint])
 
     def see_through(self, on: bool) -> None:
         """Whether the marks inside the body show."""
@@ -84,12 +85,14 @@ class RobotScene:
             parent = frames.get(int(self._model.parents[joint]))
             name = f"{_ROOT if parent is None else parent.name}/{joint}"
             frames[joint] = client.scene.add_frame(name, show_axes=False)
-            place(frames[joint], self._data.liMi[joint])
+            self._place(joint, frames[joint])
         return frames
 
-
-def place(handle: Any, placement: pin.SE3) -> None:
-    """Give a scene node a placement in its parent's frame."""
-    x, y, z, w = pin.Quaternion(placement.rotation).coeffs().tolist()
-    handle.wxyz = (w, x, y, z)
-    handle.position = tuple(placement.translation.tolist())
+    def _place(self, joint: int, frame: Any) -> None:
+        """Put a joint's frame where it is in that of its parent."""
+        placement = self._data.liMi[joint]
+        x, y, z, w = pin.Quaternion(placement.rotation).coeffs().tolist()
+        frame.wxyz = (w, x, y, z)
+        position = tuple(placement.translation.tolist())
+        if self._positions.get(joint) != position:  # most joints only turn, and viser is slow to notice that
+            self._positions[joint] = frame.position = position

@@ -52,31 +52,42 @@ class History:
 
     def __init__(self, robot: RobotModel, layout: Layout) -> None:
         self._robot, self._layout = robot, layout
+        self._slices = layout.slices
         self._rows: deque[np.ndarray] = deque()
+        # Polygons and where they end are worked out once per sample: ten drawings a second show it in turn.
+        self._polygons: deque[np.ndarray] = deque()
+        self._extents: deque[tuple[float, float]] = deque()
+        self._direction = np.array([1.0, 0.0])
 
     def __len__(self) -> int:
         return len(self._rows)
 
     def add(self, rows: np.ndarray) -> None:
         """More samples (n, width), oldest first; those out of the window are forgotten."""
-        at = self._layout.slices["time"].start
-        self._rows.extend(rows)
+        at = self._slices["time"].start
+        for row in rows:
+            polygon = polygon_of(Sample(self._layout, self._slices, row), self._robot)
+            self._rows.append(row)
+            self._polygons.append(polygon)
+            self._extents.append(extent(polygon, self._direction))
         while self._rows and self._rows[-1][at] - self._rows[0][at] >= WINDOW:
-            self._rows.popleft()
+            for kept in (self._rows, self._polygons, self._extents):
+                kept.popleft()
 
     def clear(self) -> None:
         """Forget everything."""
-        self._rows.clear()
+        for kept in (self._rows, self._polygons, self._extents):
+            kept.clear()
 
     def curves(self, direction: np.ndarray) -> Curves:
         """What has happened along a direction (2,) on the ground, of unit length."""
         rows = np.array(self._rows)
         column = {
             name: rows[:, at].reshape(len(rows), *self._layout.shapes[name])
-            for name, at in self._layout.slices.items()
+            for name, at in self._slices.items()
         }
         along, across = np.append(direction, 0.0), np.array([-direction[1], direction[0], 0.0])
-        limits = np.array([self._extent(row, direction) for row in rows])
+        limits = self._limits(direction)
         origin = float(np.nanmean(limits[0])) if np.isfinite(limits[0]).any() else 0.0
         places = {
             "com": column["com"][:, :2],
@@ -96,5 +107,9 @@ class History:
             pushed=(np.abs(column["push_wrench"]).max(axis=1) > 0.0).astype(float),
         )
 
-    def _extent(self, row: np.ndarray, direction: np.ndarray) -> tuple[float, float]:
-        return extent(polygon_of(Sample.of(self._layout, row), self._robot), direction)
+    def _limits(self, direction: np.ndarray) -> np.ndarray:
+        """Where the support ends along a direction, sample by sample (n, 2), m."""
+        if not np.array_equal(direction, self._direction):
+            self._direction = np.array(direction)
+            self._extents = deque(extent(polygon, direction) for polygon in self._polygons)
+        return np.array(self._extents)

@@ -78,6 +78,11 @@ class Visitor:
         self._thread.start()
 
     @property
+    def client(self) -> viser.ClientHandle:
+        """The browser tab."""
+        return self._client
+
+    @property
     def worker_pid(self) -> int | None:
         """Process id of the session."""
         return self._link.process.pid

@@ -68,12 +68,14 @@ class Frame(msgspec.Struct, frozen=True):
         row: the latest sample, float64.
         history: the samples at the pace of the plots since the last frame, float64, oldest first.
         notices: what has to be told to the person, once.
+        late_ticks: how many ticks have begun late since the session's process started.
     """
 
     truth: Truth
     row: bytes
     history: bytes
     notices: tuple[str, ...] = ()
+    late_ticks: int = 0
 
 
 Message = events.Event | FrameTaken | FrameWanted

@@ -9,6 +9,7 @@ from __future__ import annotations
 import gc
 import signal
 import time
+from collections.abc import Callable
 from multiprocessing.connection import Connection
 
 import msgspec
@@ -30,6 +31,8 @@ HISTORY_EVERY = 20
 _BATCH = 8
 # Shorter waits than this cost more than they give, s; and how long a paused session waits for an event, s.
 _SHORT, _LONG = 0.002, 1.0
+# Messages taken in a row: a flood of them must not stop time.
+_MOST_MESSAGES = 16
 # Samples that a reader who does not read may miss.
 _MOST_HISTORY = 1000
 
@@ -55,9 +58,13 @@ class Worker:
     Args:
         connection: the worker's end of the pipe.
         playback: the playback.
+        clock: seconds, for tests.
     """
 
-    def __init__(self, connection: Connection, playback: Playback) -> None:
+    def __init__(
+        self, connection: Connection, playback: Playback, clock: Callable[[], float] = time.perf_counter
+    ) -> None:
+        self._clock = clock
         self._connection = connection
         self._playback = playback
         self._pacer = Pacer(playback.session.scenario.timestep)
@@ -75,13 +82,20 @@ class Worker:
         """
         gc.collect()
         gc.freeze()  # what is loaded by now never becomes garbage
-        self._pacer.start(time.perf_counter(), self._playback.speed)
+        self._pacer.start(self._clock(), self._playback.speed)
         while True:
-            if self._connection.poll(self._rest(time.perf_counter())):
-                self._receive()
+            self._listen(self._rest(self._clock()))
             if self._playback.playing:
-                self._advance(min(self._pacer.due(time.perf_counter()), _BATCH))
-            self._send(time.perf_counter())
+                self._advance(min(self._pacer.due(self._clock()), _BATCH))
+            self._send(self._clock())
+
+    def _listen(self, wait: float) -> None:
+        """Wait for something in the pipe, and take all that is there: a person's event never waits for a batch."""
+        for _ in range(_MOST_MESSAGES):
+            if not self._connection.poll(wait):
+                return
+            self._receive()
+            wait = 0.0
 
     def _receive(self) -> None:
         """One message out of the pipe."""
@@ -104,18 +118,20 @@ class Worker:
         if playback.run != run:
             self._history.clear()
         if playback.run != run or playing != playback.playing or isinstance(event, Play | SetSpeed):
-            self._pacer.start(time.perf_counter(), playback.speed)
+            self._pacer.start(self._clock(), playback.speed)
         if playback.run != run or playback.session.ticks != ticks:
             self._remember()
-        self._news = True
+        # A person waits for this: the next tick is sent at once, and nothing before it; no tick comes in a pause.
+        self._news = not playback.playing
+        self._next_frame = min(self._next_frame, self._clock())
 
     def _advance(self, due: int) -> None:
         playback = self._playback
         for _ in range(due):
+            self._pacer.begin(self._clock())
             playback.tick(1)
             if playback.session.ticks % HISTORY_EVERY == 0:
                 self._remember()
-        self._pacer.done(due)
         self._news = self._news or due > 0
 
     def _remember(self) -> None:
@@ -128,6 +144,7 @@ class Worker:
             return
         frame = Frame(
             truth=self._playback.truth(self._pacer.real_time_factor(now)),
+            late_ticks=self._pacer.late_ticks,
             row=self._playback.latest.row.tobytes(),
             history=b"".join(row.tobytes() for row in self._history),
             notices=tuple(self._notices),

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, field
+from pathlib import Path
 from time import perf_counter
 from types import FrameType
 from typing import Any
+
+from numba.core.serialize import _numba_unpickle  # every array a compiled function returns passes through it
 
 from momentum_lab.session import Session
 
@@ -60,9 +63,10 @@ def calls_per_tick(session: Session) -> float:
         session.tick()
     count = 0
 
-    def watch(_frame: FrameType, event: str, what: Any) -> None:
+    def watch(frame: FrameType, event: str, what: Any) -> None:
         nonlocal count
-        count += event in ("call", "c_call") and what is not sys.setprofile
+        inside = what is sys.setprofile or frame.f_code is _numba_unpickle.__code__
+        count += event in ("call", "c_call") and not inside
 
     _watched(session, _COUNTED, watch)
     return count / _COUNTED
@@ -85,7 +89,7 @@ def profile(session: Session, least: float = 1.0) -> list[ProfileRow]:
     starts = [0.0]
 
     def watch(frame: FrameType, event: str, what: Any) -> None:
-        if what is sys.setprofile:
+        if what is sys.setprofile or frame.f_code is _numba_unpickle.__code__:
             return
         if event in ("call", "c_call"):
             name = _name(frame) if event == "call" else _builtin_name(what)
@@ -122,7 +126,9 @@ def _rows(parent: Call, depth: int, least: float) -> list[ProfileRow]:
 
 
 def _name(frame: FrameType) -> str:
-    file = frame.f_globals.get("__name__", "?").removeprefix("momentum_lab.")
+    """Module and function; frames of compiled functions know their file only."""
+    module = frame.f_globals.get("__name__") or Path(frame.f_code.co_filename).stem
+    file = module.removeprefix("momentum_lab.")
     return f"{file}.{getattr(frame.f_code, 'co_qualname', frame.f_code.co_name)}"
 
 

@@ -16,7 +16,7 @@ from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 COMMANDS = ("app", "run", "list", "bench")
 KINDS = ("robots", "controllers", "scenarios", "lessons", "gains")
 _MAX_PORT = 65535
-_MAX_BENCH_SECONDS = 600.0
+_MAX_BENCH_SECONDS, _MAX_BENCH_MINUTES = 600.0, 60.0
 _ABOVE_ZERO = math.ulp(0.0)
 
 
@@ -229,9 +229,14 @@ def _bench_arguments(parser: _Parser) -> None:
     parser.add_argument(
         "--seconds",
         type=number("--seconds", 1.0, _MAX_BENCH_SECONDS, "s"),
-        default=20.0,
         metavar="S",
-        help="how long to measure, s",
+        help="how long to measure, s; otherwise 20",
+    )
+    parser.add_argument(
+        "--minutes",
+        type=number("--minutes", 0.1, _MAX_BENCH_MINUTES, "minutes"),
+        metavar="M",
+        help="how long to measure, minutes; memory and a late client need ten",
     )
     parser.add_argument("--app", action="store_true", help="measure the app with one client instead")
     parser.add_argument(

@@ -7,17 +7,22 @@ from argparse import Namespace
 from typing import Any
 
 import msgspec
+from rich.box import SIMPLE
 from rich.console import Console
 from rich.table import Table
 
+from momentum_lab.app.figures import Figure, figures
 from momentum_lab.bench.measure import ROBOTS, Percentiles, RobotBench, measure
 from momentum_lab.bench.profile import ProfileRow, profile
 from momentum_lab.bench.stages import STAGES
 from momentum_lab.cli.progress import progress
+from momentum_lab.errors import InputError
 from momentum_lab.provenance import versions
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
 
+_SECONDS = 20.0
+_REACHED = {True: "yes", False: "NO", None: ""}
 _LABELS = {
     "state_terms": "state terms",
     "controller": "controller",
@@ -33,15 +38,20 @@ _BAR = 20
 
 
 def bench(args: Namespace) -> int:
-    """Print the speed of each part of a tick for TALOS and G1, or of the app with one client."""
+    """Print the speed of each part of a tick for TALOS and G1, or of the app with one client.
+
+    Raises:
+        InputError: the time is given twice.
+    """
+    seconds = _seconds(args)
     if args.app:
-        return _bench_app(args)
+        return _bench_app(seconds, args.json)
     if args.profile:
         return _profile(args)
     results = []
     for name in ROBOTS:
         with progress(f"measuring {name}") as report:
-            results.append(measure(name, args.seconds / len(ROBOTS), report))
+            results.append(measure(name, seconds / len(ROBOTS), report))
     if args.json:
         print(_as_json({"robots": results}))
     else:
@@ -49,18 +59,34 @@ def bench(args: Namespace) -> int:
     return 0
 
 
-def _bench_app(args: Namespace) -> int:
-    from momentum_lab.app.bare_client import measure_app
+def _seconds(args: Namespace) -> float:
+    if args.minutes is None:
+        return _SECONDS if args.seconds is None else float(args.seconds)
+    if args.seconds is not None:
+        raise InputError("minutes", f"{args.minutes:g}", "either --minutes or --seconds")
+    return 60.0 * float(args.minutes)
 
-    measured = msgspec.to_builtins(measure_app(args.seconds))
-    if args.json:
-        print(_as_json({"app": measured}))
-        return 0
-    table = Table(title="The app with one client", show_header=False)
-    for name, value in measured.items():
-        table.add_row(name.replace("_", " "), f"{value:.3g}" if isinstance(value, float) else str(value))
-    Console(markup=False).print(table)
+
+def _bench_app(seconds: float, as_json: bool) -> int:
+    from momentum_lab.app.measure import measure_app
+
+    with progress("measuring the app") as report:
+        measured = measure_app(seconds, report=report)
+    if as_json:
+        print(_as_json({"app": measured, "figures": figures(measured)}))
+    else:
+        _show_app(seconds, figures(measured))
     return 0
+
+
+def _show_app(seconds: float, lines: list[Figure]) -> None:
+    table = Table(title=f"The app with one client, {seconds:g} s", box=SIMPLE)
+    for heading, justify in (("", "left"), ("measured", "right"), ("to reach", "left"), ("reached", "left")):
+        table.add_column(heading, justify=justify)  # type: ignore[arg-type]
+    for line in lines:
+        table.add_row(line.name, line.value, line.bound, _REACHED[line.reached])
+    table.caption = f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors"
+    Console(markup=False).print(table)
 
 
 def _as_json(results: dict[str, Any]) -> str:
@@ -107,14 +133,16 @@ def _profile(args: Namespace) -> int:
 
 
 def _show_profile(name: str, rows: list[ProfileRow]) -> None:
+    console = Console(markup=False)
     table = Table(title=f"A tick of {name}, call by call", box=None)
-    table.add_column("function", overflow="ellipsis", no_wrap=True)
+    width = max(30, console.width - _BAR - 30)  # the numbers are worth more than the ends of names
+    table.add_column("function", overflow="ellipsis", no_wrap=True, max_width=width)
     for heading in ("calls", "own us", "us"):
-        table.add_column(heading, justify="right")
+        table.add_column(heading, justify="right", no_wrap=True, min_width=6)
     table.add_column("share of the tick", min_width=_BAR)
     for row in rows:
         bar = "\u2588" * round(_BAR * row.total / rows[0].total)
         numbers = (f"{row.calls:.1f}", f"{row.own:.1f}", f"{row.total:.1f}")
         table.add_row(f"{'  ' * row.depth}{row.name}", *numbers, bar)
     table.caption = "being watched makes every call about a microsecond slower"
-    Console(markup=False).print(table)
+    console.print(table)

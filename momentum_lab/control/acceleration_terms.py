@@ -24,20 +24,22 @@ def posture(
     stiffness: float,
     damping: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Weight and wanted value of every acceleration (nv,): theta''_d = k (theta_0 - theta) - d theta'.
+    """Weight and wanted value of every acceleration (nv,): w (theta''_d - theta'')^2 + e theta''^2 as one square.
+
+    theta''_d = k (theta_0 - theta) - d theta', and e keeps the program strictly convex.
 
     Args:
         q: configuration (nq,).
         v: velocity (nv,).
         home: theta_0 (na,), rad.
         free: 1 for joints that follow the posture, 0 for everything else (nv,).
-        weight: of those joints.
-        ridge: weight of every acceleration besides.
+        weight: w, of those joints.
+        ridge: e, for every acceleration.
         stiffness: k, 1/s^2.
         damping: d, 1/s.
     """
     wanted = np.zeros(v.size)
-    wanted[6:] = free[6:] * (stiffness * (home - q[7:]) - damping * v[6:])
+    wanted[6:] = free[6:] * (stiffness * (home - q[7:]) - damping * v[6:]) * (weight / (weight + ridge))
     return weight * free + ridge, wanted
 
 

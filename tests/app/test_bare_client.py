@@ -1,17 +1,8 @@
-"""The measurement of the app: it runs, ends, and tells believable figures."""
+"""What a tab without a browser makes of the messages it receives."""
 
 from __future__ import annotations
 
-from momentum_lab.app.bare_client import Received, measure_app
-
-
-def test_the_app_is_measured_from_outside():
-    measured = measure_app(3.0)
-    assert 2.9 < measured.seconds < 4.0
-    assert 0.2 < measured.real_time_factor < 1.1
-    assert 5.0 < measured.drawings_per_second < 45.0
-    assert 5.0 < measured.messages_per_drawing < 100.0
-    assert 0.0 < measured.first_picture < 30.0
+from momentum_lab.app.bare_client import Received
 
 
 def test_a_picture_that_comes_in_two_windows_counts_once():
@@ -31,3 +22,26 @@ def test_simulated_time_is_read_from_the_page():
     content = '<div class="lab n dim">simulated time <b>12.34 s</b> · 1.00 × real time</div>'
     received.take([{"type": "GuiUpdateMessage", "uuid": "x", "updates": {"content": content}}])
     assert received.told[1] == 12.34
+
+
+def test_nodes_are_there_from_when_they_appear_until_they_are_hidden():
+    def visible(on):
+        return {"type": "SetSceneNodeVisibilityMessage", "name": "/marks/push", "visible": on}
+
+    received = Received()
+    received.take([{"type": "ArrowMessage", "name": "/marks/push", "props": {}}], 1.0)
+    received.take([visible(True)], 2.0)
+    assert received.shown == {"/marks/push": 1.0}
+    received.take([visible(False)], 3.0)
+    assert received.shown == {}
+    received.take([visible(True)], 4.0)
+    assert received.shown == {"/marks/push": 4.0}
+
+
+def test_pictures_are_the_windows_in_which_something_turns():
+    received = Received()
+    received.take([{"type": "SetOrientationMessage", "name": "/robot/1"}] * 2, 1.0)
+    received.take([{"type": "SetPositionMessage", "name": "/robot/1"}], 2.0)
+    received.take([{"type": "SetOrientationMessage", "name": "/robot/1"}], 3.0)
+    assert received.pictures == [1.0, 3.0]
+    assert received.messages == 4

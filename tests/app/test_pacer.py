@@ -13,7 +13,8 @@ def run(pacer: Pacer, start: float, seconds: float, every: float, most: int = 10
     for _ in range(round(seconds / every)):
         now += every
         ticks = min(pacer.due(now), most)
-        pacer.done(ticks)
+        for _ in range(ticks):
+            pacer.begin(now)
         pacer.real_time_factor(now)
         total += ticks
     return total
@@ -45,7 +46,8 @@ def test_a_long_stall_is_not_caught_up():
     pacer.start(0.0, 1.0)
     due = pacer.due(3.0)
     assert due < 100
-    pacer.done(due)
+    for _ in range(due):
+        pacer.begin(3.0)
     assert pacer.due(3.001) == 1
 
 
@@ -63,3 +65,30 @@ def test_real_time_factor_follows_the_last_second():
     assert pacer.real_time_factor(3.004) == pytest.approx(0.25, abs=0.01)
     run(pacer, 3.0, 2.0, 0.004)
     assert pacer.real_time_factor(5.004) == pytest.approx(1.0, abs=0.06)
+
+
+@pytest.mark.parametrize(("speed", "stall", "late"), [(1.0, 0.0045, 0), (1.0, 0.0125, 7), (0.5, 0.0125, 3)])
+def test_ticks_that_begin_later_than_five_milliseconds_are_counted(speed, stall, late):
+    # Tick k is due at k / (1000 speed) s; after a stall, those with stall - k / (1000 speed) > 5 ms begin late.
+    pacer = Pacer(1e-3)
+    pacer.start(7.0, speed)
+    for _ in range(pacer.due(7.0 + stall)):
+        pacer.begin(7.0 + stall)
+    assert pacer.late_ticks == late
+
+
+def test_ticks_that_are_given_up_after_a_long_stall_count_as_late():
+    pacer = Pacer(1e-3)
+    pacer.start(0.0, 1.0)
+    for _ in range(pacer.due(3.0)):
+        pacer.begin(3.0)
+    assert pacer.late_ticks == pytest.approx(3000 - 5, abs=1)
+
+
+def test_a_new_start_is_not_late():
+    pacer = Pacer(1e-3)
+    pacer.start(0.0, 1.0)
+    pacer.start(60.0, 1.0)
+    assert pacer.due(60.001) == 1
+    pacer.begin(60.001)
+    assert pacer.late_ticks == 0

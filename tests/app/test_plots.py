@@ -80,6 +80,16 @@ def test_limits_have_no_gaps(desk, pushed):
         assert np.isfinite(limit).all()
 
 
+def test_a_push_that_goes_on_is_not_drawn_into_the_future(desk, pushed):
+    rows = pushed.recording.rows(20)
+    during = pushed.recording.column("push_wrench", 20).any(axis=1)
+    desk.plots.add(rows[: np.flatnonzero(during)[-1] + 1])
+    for handle in desk.handles:
+        column = handle.data[-1]
+        assert column[-3:-1].tolist() == [1.0, 0.0]
+        assert np.isnan(column[-1])
+
+
 def test_ten_drawings_a_second(desk, pushed):
     rows = pushed.recording.rows(20)
     drawn = 0
@@ -108,3 +118,46 @@ def test_curves_follow_the_direction_of_the_push(desk, pushed):
     desk.plots.along(np.array([0.0, 1.0]))
     desk.plots.add(rows[:0])
     assert np.nanmax(desk.handles[1].data[3]) < 0.1 * forward
+
+
+def standing_still(pushed, seconds: float) -> np.ndarray:
+    """The sample before the push, at the pace of the plots."""
+    times = np.arange(0.0, seconds, 0.02)
+    rows = np.tile(pushed.recording.rows()[0], (len(times), 1))
+    rows[:, pushed.recording.slices["time"].start] = times
+    return rows
+
+
+def drawings(desk: Desk, rows: np.ndarray) -> int:
+    """How often the plots are drawn while the samples come, 50 a second."""
+    count = 0
+    for row in rows:
+        desk.now += 0.02
+        before = desk.handles[0].data
+        desk.plots.add(row[None])
+        count += desk.handles[0].data is not before
+    return count
+
+
+def test_a_robot_at_rest_has_its_plots_drawn_once_a_second(desk, pushed):
+    rows = standing_still(pushed, WINDOW + 5.0)
+    filling = round(WINDOW / 0.02)
+    assert drawings(desk, rows[:filling]) > 60
+    assert drawings(desk, rows[filling:]) <= 6
+
+
+@pytest.mark.parametrize(
+    ("name", "change"), [("com", 0.002), ("momentum_rate_measured", 2.0), ("momentum", 0.2)]
+)
+def test_what_can_be_seen_in_a_plot_is_drawn_at_once(desk, pushed, name, change):
+    rows = standing_still(pushed, WINDOW + 3.0)
+    drawings(desk, rows[:-50])
+    rows[-50:, pushed.recording.slices[name].start] += change
+    assert drawings(desk, rows[-50:]) >= 8
+
+
+def test_what_is_not_a_number_is_not_at_rest(desk, pushed):
+    rows = standing_still(pushed, WINDOW + 3.0)
+    drawings(desk, rows[:-50])
+    rows[-50:, pushed.recording.slices["cop_measured"]] = np.nan
+    assert drawings(desk, rows[-50:]) >= 8
