@@ -132,8 +132,10 @@ def equation_residual(
 
 @compiled("i8(f8[::1], i8, f8[:])")
 def put(row: np.ndarray, start: int, numbers: np.ndarray) -> int:
-    """Write numbers into a row from a place on; the place behind them."""
+    """Write numbers into a row from a place on, if they fit in; the place behind them."""
     end = start + numbers.size
+    if end > row.size:
+        raise ValueError("the quantities of a tick do not fill a row")
     row[start:end] = numbers
     return end
 
@@ -198,15 +200,15 @@ def fill(
     end = put(row, end, foot_wrench.ravel())
     end = put(row, end, wrench_admissible.ravel())
     end = put(row, end, sole_poses(sole_position, sole_rotation).ravel())
-    row[end], row[end + 1] = cop_coordinates(contact, world, ground_height)
-    end = put(row, end + 2, cop_admissible)
+    end = put(row, end, np.array(cop_coordinates(contact, world, ground_height)))
+    end = put(row, end, cop_admissible)
     end = put(row, end, cop_desired)
-    row[end], row[end + 1] = cmp_coordinates(contact[:3], com, ground_height)
-    row[end + 2], row[end + 3] = capture_coordinates(com, com_velocity, ground_height)
-    end = put(row, end + 4, sole_cops(foot_wrench, sole_rotation).ravel())
+    end = put(row, end, np.array(cmp_coordinates(contact[:3], com, ground_height)))
+    end = put(row, end, np.array(capture_coordinates(com, com_velocity, ground_height)))
+    end = put(row, end, sole_cops(foot_wrench, sole_rotation).ravel())
     end = put(row, end, push_wrench)
     end = put(row, end, other_wrench)
-    row[end], row[end + 1], row[end + 2] = priority, residual / weight, contact_residual
-    row[end + 3], row[end + 4] = failed, fallen
-    if end + 5 != row.size:
+    numbers = (priority, residual / weight, contact_residual, 1.0 * failed, 1.0 * fallen)
+    end = put(row, end, np.array(numbers))
+    if end != row.size:
         raise ValueError("the quantities of a tick do not fill a row")
