@@ -34,16 +34,15 @@ def factorize(matrix: np.ndarray) -> bool:
 
 
 @compiled(f"void({_MATRIX}, {_MATRIX})")
-def forward_substitute(factor: np.ndarray, columns: np.ndarray) -> None:
-    """Replace columns (n, k) by L^-1 times themselves."""
-    for row in range(len(factor)):
-        for above in range(row):
-            part = factor[row, above]
-            for column in range(columns.shape[1]):
-                columns[row, column] -= part * columns[above, column]
-        scale = 1.0 / factor[row, row]
-        for column in range(columns.shape[1]):
-            columns[row, column] *= scale
+def forward_substitute(factor: np.ndarray, rows: np.ndarray) -> None:
+    """Replace every row b of rows (k, n) by L^-1 b."""
+    for i in range(len(factor)):
+        scale = 1.0 / factor[i, i]
+        for row in range(len(rows)):
+            known = 0.0
+            for k in range(i):
+                known += factor[i, k] * rows[row, k]
+            rows[row, i] = (rows[row, i] - known) * scale
 
 
 @compiled(f"void({_MATRIX}, {_VECTOR})")
@@ -55,13 +54,24 @@ def backward_substitute(factor: np.ndarray, vector: np.ndarray) -> None:
             vector[above] -= factor[row, above] * vector[row]
 
 
-@compiled(f"{_MATRIX}({_MATRIX}, {_MATRIX})")
-def solved(factor: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """P^-1 times the columns (n, k), from the factor L (n, n) of P."""
-    answer = columns.copy()
-    forward_substitute(factor, answer)
-    for column in range(columns.shape[1]):
-        vector = answer[:, column].copy()
-        backward_substitute(factor, vector)
-        answer[:, column] = vector
+@compiled(f"{_VECTOR}({_MATRIX}, {_VECTOR})")
+def solved(factor: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """P^-1 times a vector (n,), from the factor L (n, n) of P."""
+    answer = vector.copy()
+    forward_substitute(factor, answer.reshape(1, -1))
+    backward_substitute(factor, answer)
     return answer
+
+
+@compiled(f"{_MATRIX}({_MATRIX})")
+def gram(rows: np.ndarray) -> np.ndarray:
+    """The products R R^T (k, k) of all pairs of rows of R (k, n)."""
+    count, size = rows.shape
+    products = np.empty((count, count))
+    for i in range(count):
+        for j in range(i + 1):
+            product = 0.0
+            for k in range(size):
+                product += rows[i, k] * rows[j, k]
+            products[i, j] = products[j, i] = product
+    return products

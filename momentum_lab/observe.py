@@ -9,12 +9,14 @@ import numpy as np
 from momentum_lab.compiled import compiled
 from momentum_lab.control.controller import ControlOutput
 from momentum_lab.momentum.ground import GRAVITY, cmp_coordinates, cop_coordinates, sole_cop
-from momentum_lab.momentum.pendulum import capture_point
+from momentum_lab.momentum.pendulum import capture_coordinates
 from momentum_lab.momentum.wrench import sum_wrenches
 from momentum_lab.physics.simulator import Step
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.rotation import quaternion_of
 from momentum_lab.robot.state import Dynamics
+
+_MATRIX, _VECTOR = "f8[:, ::1]", "f8[::1]"
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,52 +53,38 @@ def observe(row: np.ndarray, tick: Tick) -> None:
     |A_G a + dA_G v - dh_measured| / (m g) with a = (v+ - v) / dt (Eq. 20).
     """
     dynamics, output, step = tick.dynamics, tick.output, tick.step
-    poses, cop, cmp, foot_cops, residual = derived(
-        dynamics.sole_position,
-        dynamics.sole_rotation,
-        dynamics.com_in_world,
-        dynamics.centroidal_map,
-        dynamics.centroidal_bias,
-        dynamics.state.v,
-        step.state.v,
-        step.foot_wrench,
-        step.other_wrench,
-        step.momentum_rate,
-        tick.ground_height,
-        tick.timestep,
-    )
-    quantities = (
-        tick.time,
+    fill(
+        row,
         dynamics.state.q,
         dynamics.state.v,
-        step.torque,
-        step.stop_torque,
         dynamics.com_in_world,
         dynamics.com_velocity,
         dynamics.momentum,
+        dynamics.centroidal_map,
+        dynamics.centroidal_bias,
+        dynamics.sole_position,
+        dynamics.sole_rotation,
         output.momentum_rate_desired,
         output.momentum_rate_admissible,
-        step.momentum_rate,
-        step.foot_wrench,
         output.foot_wrench_admissible,
-        poses,
-        cop,
-        output.cop_admissible,
         output.cop_desired,
-        cmp,
-        capture_point(dynamics.com_in_world, dynamics.com_velocity, tick.ground_height),
-        foot_cops,
-        step.push_wrench,
+        output.cop_admissible,
+        step.state.v,
+        step.torque,
+        step.stop_torque,
+        step.foot_wrench,
         step.other_wrench,
-        (
-            tick.priority,
-            residual / (tick.robot.mass * GRAVITY),
-            step.contact_residual,
-            output.failure is not None,
-            tick.fallen,
-        ),
+        step.push_wrench,
+        step.momentum_rate,
+        step.contact_residual,
+        tick.time,
+        tick.timestep,
+        tick.ground_height,
+        tick.robot.mass * GRAVITY,
+        tick.priority,
+        output.failure is not None,
+        tick.fallen,
     )
-    np.concatenate(quantities, axis=None, out=row)
 
 
 @compiled("f8[:, ::1](f8[:, ::1], f8[:, :, ::1])")
@@ -142,33 +130,85 @@ def equation_residual(
     return float(np.abs(unexplained).max())
 
 
+@compiled("i8(f8[::1], i8, f8[:])")
+def put(row: np.ndarray, start: int, numbers: np.ndarray) -> int:
+    """Write numbers into a row from a place on, if they fit in; the place behind them."""
+    end = start + numbers.size
+    if end > row.size:
+        raise ValueError("the quantities of a tick do not fill a row")
+    row[start:end] = numbers
+    return end
+
+
 @compiled(
-    "Tuple((f8[:, ::1], f8[::1], f8[::1], f8[:, ::1], f8))(f8[:, ::1], f8[:, :, ::1], f8[::1], f8[:, ::1], f8[::1],"
-    "f8[::1], f8[::1], f8[:, ::1], f8[::1], f8[::1], f8, f8)"
+    # the row, then what comes from the dynamics, the output, the step, and the tick itself
+    f"void({_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_MATRIX}, "
+    f"f8[:, :, ::1], {_VECTOR}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, "
+    f"{_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}, f8, f8, f8, f8, f8, f8, b1, b1)"
 )
-def derived(
-    sole_position: np.ndarray,
-    sole_rotation: np.ndarray,
+def fill(
+    row: np.ndarray,
+    q: np.ndarray,
+    v: np.ndarray,
     com: np.ndarray,
+    com_velocity: np.ndarray,
+    momentum: np.ndarray,
     centroidal_map: np.ndarray,
     centroidal_bias: np.ndarray,
-    velocity: np.ndarray,
+    sole_position: np.ndarray,
+    sole_rotation: np.ndarray,
+    rate_desired: np.ndarray,
+    rate_admissible: np.ndarray,
+    wrench_admissible: np.ndarray,
+    cop_desired: np.ndarray,
+    cop_admissible: np.ndarray,
     next_velocity: np.ndarray,
+    torque: np.ndarray,
+    stop_torque: np.ndarray,
     foot_wrench: np.ndarray,
     other_wrench: np.ndarray,
+    push_wrench: np.ndarray,
     momentum_rate: np.ndarray,
-    ground_height: float,
+    contact_residual: float,
+    time: float,
     timestep: float,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float]:
-    """Sole poses (F, 7), net CoP (2,) and CMP (2,), foot CoPs (F, 2), residual of Eq. 20: all in one call.
+    ground_height: float,
+    weight: float,
+    priority: float,
+    failed: bool,
+    fallen: bool,
+) -> None:
+    """Derive what is not given and write all quantities into a row (width,), in the order of `Layout.of`.
 
-    Shapes and units of the arguments are those of `Dynamics` and `Step`.
+    Shapes and units of the arguments are those of `Dynamics`, `ControlOutput`, `Step` and `Tick`; the weight is
+    m g, N.
     """
-    contact = sum_wrenches(foot_wrench, sole_position, np.zeros(3)) + other_wrench
-    return (
-        sole_poses(sole_position, sole_rotation),
-        np.array(cop_coordinates(contact, np.zeros(3), ground_height)),
-        np.array(cmp_coordinates(contact[:3], com, ground_height)),
-        sole_cops(foot_wrench, sole_rotation),
-        equation_residual(centroidal_map, centroidal_bias, velocity, next_velocity, momentum_rate, timestep),
-    )
+    world = np.zeros(3)
+    contact = sum_wrenches(foot_wrench, sole_position, world) + other_wrench
+    residual = equation_residual(centroidal_map, centroidal_bias, v, next_velocity, momentum_rate, timestep)
+    row[0] = time
+    end = put(row, 1, q)
+    end = put(row, end, v)
+    end = put(row, end, torque)
+    end = put(row, end, stop_torque)
+    end = put(row, end, com)
+    end = put(row, end, com_velocity)
+    end = put(row, end, momentum)
+    end = put(row, end, rate_desired)
+    end = put(row, end, rate_admissible)
+    end = put(row, end, momentum_rate)
+    end = put(row, end, foot_wrench.ravel())
+    end = put(row, end, wrench_admissible.ravel())
+    end = put(row, end, sole_poses(sole_position, sole_rotation).ravel())
+    end = put(row, end, np.array(cop_coordinates(contact, world, ground_height)))
+    end = put(row, end, cop_admissible)
+    end = put(row, end, cop_desired)
+    end = put(row, end, np.array(cmp_coordinates(contact[:3], com, ground_height)))
+    end = put(row, end, np.array(capture_coordinates(com, com_velocity, ground_height)))
+    end = put(row, end, sole_cops(foot_wrench, sole_rotation).ravel())
+    end = put(row, end, push_wrench)
+    end = put(row, end, other_wrench)
+    numbers = (priority, residual / weight, contact_residual, 1.0 * failed, 1.0 * fallen)
+    end = put(row, end, np.array(numbers))
+    if end != row.size:
+        raise ValueError("the quantities of a tick do not fill a row")

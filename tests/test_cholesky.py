@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute, solved
+from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute, gram, solved
 from tests.conftest import assert_close
 
 
@@ -30,19 +30,24 @@ def test_only_the_lower_triangle_is_read(matrix):
 
 def test_substitutions_solve_triangular_systems(matrix, rng):
     factor = np.linalg.cholesky(matrix)
-    columns, vector = rng.normal(size=(len(matrix), 3)), rng.normal(size=len(matrix))
-    forward, backward = columns.copy(), vector.copy()
+    rows, vector = rng.normal(size=(3, len(matrix))), rng.normal(size=len(matrix))
+    forward, backward = rows.copy(), vector.copy()
     forward_substitute(factor, forward)
     backward_substitute(factor, backward)
-    assert_close(factor @ forward, columns, 1e-10)
+    assert_close(forward @ factor.T, rows, 1e-10)
     assert_close(factor.T @ backward, vector, 1e-10)
 
 
 def test_a_solution_fulfils_its_equation(matrix, rng):
-    columns = rng.normal(size=(len(matrix), 2))
+    vector = rng.normal(size=len(matrix))
     factor = matrix.copy()
     factorize(factor)
-    assert_close(matrix @ solved(factor, columns), columns, 1e-10)
+    assert_close(matrix @ solved(factor, vector), vector, 1e-10)
+
+
+def test_products_of_rows_are_numpys(rng):
+    rows = rng.normal(size=(5, 38))
+    assert_close(gram(rows), rows @ rows.T, 1e-12)
 
 
 @pytest.mark.parametrize("bad", [-1.0, 0.0, np.nan])

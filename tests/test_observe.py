@@ -45,6 +45,18 @@ def test_a_row_holds_the_state_and_what_acts_until_the_next(robot, session):
         assert_close(explained, rate[i], 1e-9 * robot.mass * G)
 
 
+@pytest.mark.parametrize("missing", [-1, 1, 40])
+def test_a_row_of_another_width_is_refused(robot, missing):
+    state = State(played(robot, forward_push(robot)).recording.column("q")[0], np.zeros(robot.nv))
+    dynamics, feet = robot.at(state), len(robot.soles)
+    nothing, six = np.zeros(robot.na), np.zeros(6)
+    step = Step(state, nothing, nothing, np.zeros((feet, 6)), six, six, six, 0.0)
+    tick = Tick(robot, 0.0, 1e-3, dynamics, limp(robot, dynamics, None), step, 0.0, 0.0, False)
+    observe(np.empty(Layout.of(robot).width), tick)
+    with pytest.raises(ValueError, match="do not fill a row"):
+        observe(np.empty(Layout.of(robot).width - missing), tick)
+
+
 def test_com_and_momentum_are_the_states(robot, column):
     """By Pinocchio's centre of mass and link by link momenta: l = sum m c', k = sum (c - r) x m c' + I w."""
     model, data = robot.model, robot.model.createData()

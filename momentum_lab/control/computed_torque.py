@@ -9,7 +9,7 @@ import numpy as np
 from momentum_lab.compiled import compiled
 from momentum_lab.control.accelerations import AccelerationProgram, MotionWeights
 from momentum_lab.control.controller import ControlOutput, Reference
-from momentum_lab.control.desired import desired_angular_rate, desired_linear_rate
+from momentum_lab.control.desired import desired_momentum_rate
 from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture, without_ground
 from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds, StanceFeet
 from momentum_lab.control.gains import gain
@@ -163,11 +163,15 @@ class ComputedTorque:
         self, dynamics: Dynamics, reference: Reference, gains: ComputedTorqueGains
     ) -> np.ndarray:
         """[dl_d; dk_d] of Eqs. 37 and 38 (6,), N and N m."""
-        linear = desired_linear_rate(
-            self.robot.mass, dynamics, reference, gains.linear_damping, gains.linear_stiffness
+        return desired_momentum_rate(
+            self.robot.mass,
+            dynamics,
+            reference,
+            gains.linear_damping,
+            gains.linear_stiffness,
+            gains.angular_damping,
+            gains.pelvis_stiffness,
         )
-        angular = desired_angular_rate(dynamics, reference, gains.angular_damping, gains.pelvis_stiffness)
-        return np.concatenate([linear, angular])
 
     def _balance(
         self,

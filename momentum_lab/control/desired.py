@@ -67,6 +67,44 @@ def desired_angular_rate(
     )
 
 
+def desired_momentum_rate(
+    mass: float,
+    dynamics: Dynamics,
+    reference: Reference,
+    linear_damping: float,
+    linear_stiffness: float,
+    angular_damping: float,
+    pelvis_stiffness: float,
+) -> np.ndarray:
+    """[dl_d/dt; dk_d/dt] (6,), N and N m: `desired_linear_rate` and `desired_angular_rate` in one call.
+
+    Args:
+        mass: total mass m, kg.
+        dynamics: the state with everything computed.
+        reference: what the robot shall do.
+        linear_damping: Gamma_21, 1/s.
+        linear_stiffness: Gamma_22, 1/s^2.
+        angular_damping: Gamma_11, 1/s.
+        pelvis_stiffness: K_theta, 1/s^2.
+    """
+    return _momentum_rate(
+        mass,
+        reference.com_velocity,
+        dynamics.com_velocity,
+        reference.com,
+        dynamics.com_in_world,
+        linear_damping,
+        linear_stiffness,
+        dynamics.momentum,
+        reference.angular_momentum,
+        dynamics.locked_inertia,
+        dynamics.pelvis_rotation,
+        reference.pelvis_rotation,
+        angular_damping,
+        pelvis_stiffness,
+    )
+
+
 @compiled("f8[::1](f8, f8[::1], f8[::1], f8[::1], f8[::1], f8, f8)")
 def _linear_rate(
     mass: float,
@@ -95,4 +133,31 @@ def _angular_rate(
     for i in range(3):
         for k in range(3):
             rate[i] -= stiffness * locked_inertia[i, k] * tilt[k]
+    return rate
+
+
+@compiled(
+    "f8[::1](f8, f8[::1], f8[::1], f8[::1], f8[::1], f8, f8, f8[::1], f8[::1], f8[:, :], f8[:, :], f8[:, :], f8, f8)"
+)
+def _momentum_rate(
+    mass: float,
+    desired_velocity: np.ndarray,
+    velocity: np.ndarray,
+    desired: np.ndarray,
+    com: np.ndarray,
+    linear_damping: float,
+    linear_stiffness: float,
+    momentum: np.ndarray,
+    desired_momentum: np.ndarray,
+    locked_inertia: np.ndarray,
+    pelvis: np.ndarray,
+    desired_pelvis: np.ndarray,
+    angular_damping: float,
+    pelvis_stiffness: float,
+) -> np.ndarray:
+    rate = np.empty(6)
+    rate[:3] = _linear_rate(mass, desired_velocity, velocity, desired, com, linear_damping, linear_stiffness)
+    rate[3:] = _angular_rate(
+        momentum, desired_momentum, locked_inertia, pelvis, desired_pelvis, angular_damping, pelvis_stiffness
+    )
     return rate

@@ -18,12 +18,12 @@ from momentum_lab.control.foot_programs import (
     cop_program,
     foot_wrenches,
     force_program,
-    lowest_corners,
+    near_the_ground,
     placed_feet,
+    quiet_share,
 )
-from momentum_lab.control.qp import QuadraticProgram, solve
+from momentum_lab.control.qp import CERTIFIED, QuadraticProgram, solve
 from momentum_lab.momentum.ground import GRAVITY
-from momentum_lab.momentum.polygon import convex_hull
 from momentum_lab.momentum.support import inset_rectangle
 from momentum_lab.momentum.wrench import cross
 from momentum_lab.robot.model import RobotModel
@@ -71,7 +71,7 @@ class StanceFeet:
         com_to_sole: from the CoM to the sole origins, world axes (S, 3), m.
         com_to_ankle: from the CoM to the ankles, world axes (S, 3), m.
         rotation: axes of the soles in the world (S, 3, 3).
-        safe_corners: corners of the safe rectangles in the world, seen from above (4 S, 2), m.
+        safe_polygon: support polygon of the safe rectangles, counter-clockwise (K, 2), m.
         height: mean height of the sole origins in the world, m.
     """
 
@@ -80,13 +80,8 @@ class StanceFeet:
     com_to_sole: np.ndarray
     com_to_ankle: np.ndarray
     rotation: np.ndarray
-    safe_corners: np.ndarray
+    safe_polygon: np.ndarray
     height: float
-
-    @property
-    def safe_polygon(self) -> np.ndarray:
-        """Support polygon of the safe rectangles, counter-clockwise (K, 2), m."""
-        return convex_hull(self.safe_corners)
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,8 +152,9 @@ class Footing:
             stance: the feet that are meant to carry, as indices.
             sole_height: height of the ground under each sole (F,), m.
         """
-        height = lowest_corners(dynamics.sole_position, dynamics.sole_rotation, self._lower, self._upper)
-        near = (height - sole_height < _IN_THE_AIR).tolist()
+        near = near_the_ground(
+            dynamics.sole_position, dynamics.sole_rotation, self._lower, self._upper, sole_height, _IN_THE_AIR
+        ).tolist()
         return tuple([foot for foot in stance if near[foot]])
 
     def share(
@@ -177,17 +173,46 @@ class Footing:
         """
         if len(feet.index) == 1:
             forces = force.reshape(1, 3)
-            sole_moments = _single_cop(feet, force, angular_rate, bounds)
-        else:
-            forces = _forces(feet, force, angular_rate, bounds)
-            sole_moments = _cops(feet, forces, angular_rate, bounds)
-        return self._recombine(feet, forces, sole_moments)
+            return self._recombine(feet, forces, _single_cop(feet, force, angular_rate, bounds))
+        wrenches, rate, certified = self._quietly(feet, force, angular_rate, bounds)
+        if certified:
+            return self._of_all(feet, wrenches, rate)
+        forces = _forces(feet, force, angular_rate, bounds)
+        return self._recombine(feet, forces, _cops(feet, forces, angular_rate, bounds))
+
+    def _quietly(
+        self, feet: StanceFeet, force: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds
+    ) -> tuple[np.ndarray, np.ndarray, bool]:
+        """Wrenches and momentum rate as if no bound stood in the way, and whether none does."""
+        return quiet_share(
+            feet.com_to_ankle,
+            feet.com_to_sole,
+            feet.rotation,
+            feet.safe.ankles,
+            feet.safe.lower,
+            feet.safe.upper,
+            force,
+            angular_rate,
+            _pyramid(bounds.friction),
+            *_pressing(len(feet.index), bounds.least_force),
+            bounds.normal_moment,
+            _ANGULAR_WEIGHT,
+            _SMALL_FORCE_WEIGHT,
+            _COP_SHIFT_WEIGHT,
+            _NORMAL_MOMENT_WEIGHT,
+            self.mass * GRAVITY,
+            CERTIFIED,
+        )
 
     def _recombine(self, feet: StanceFeet, forces: np.ndarray, sole_moments: np.ndarray) -> FootForces:
         """Wrenches about the sole origins and the momentum rate they cause (Eqs. 1, 2)."""
         carried, rate = foot_wrenches(
             forces, sole_moments, feet.rotation, feet.safe.ankles, feet.com_to_sole, self.mass * GRAVITY
         )
+        return self._of_all(feet, carried, rate)
+
+    def _of_all(self, feet: StanceFeet, carried: np.ndarray, rate: np.ndarray) -> FootForces:
+        """With zero wrenches for the feet that do not carry."""
         if len(feet.index) == len(self.soles):
             return FootForces(carried, rate)
         wrench = np.zeros((len(self.soles), 6))

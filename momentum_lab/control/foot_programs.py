@@ -8,6 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from momentum_lab.compiled import compiled
+from momentum_lab.control.optimality import judged_minimum
+from momentum_lab.momentum.polygon import convex_hull
 from momentum_lab.momentum.wrench import cross
 
 _MATRIX, _VECTOR, _STACK = "f8[:, ::1]", "f8[::1]", "f8[:, :, ::1]"
@@ -36,8 +38,8 @@ def placed_feet(
         corners: corners of their safe rectangles in the sole frames (S, 4, 2), m.
 
     Returns:
-        From the CoM to the soles and to the ankles (S, 3), axes (S, 3, 3), safe corners in the world from above
-        (4 S, 2), mean height of the soles, m.
+        From the CoM to the soles and to the ankles (S, 3), axes (S, 3, 3), convex hull of the safe corners in the
+        world, seen from above (K, 2), mean height of the soles, m.
     """
     count = len(stance)
     to_sole, to_ankle, axes = np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 3, 3))
@@ -52,27 +54,36 @@ def placed_feet(
             x, y = corners[place, corner]
             for i in range(2):
                 placed[4 * place + corner, i] = position[foot, i] + turn[i, 0] * x + turn[i, 1] * y
-    return to_sole, to_ankle, axes, placed, height
+    return to_sole, to_ankle, axes, convex_hull(placed), height
 
 
-@compiled(f"{_VECTOR}({_MATRIX}, {_STACK}, {_MATRIX}, {_MATRIX})")
-def lowest_corners(
-    position: np.ndarray, rotation: np.ndarray, lower: np.ndarray, upper: np.ndarray
+@compiled(f"b1[::1]({_MATRIX}, {_STACK}, {_MATRIX}, {_MATRIX}, {_VECTOR}, f8)")
+def near_the_ground(
+    position: np.ndarray,
+    rotation: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    sole_height: np.ndarray,
+    margin: float,
 ) -> np.ndarray:
-    """Height of the lowest corner of each sole in the world (F,), m.
+    """Whether the lowest corner of each sole is less than a margin (m) above the ground (F,).
 
     Args:
         position: sole origins in the world (F, 3), m.
         rotation: axes of the soles in the world (F, 3, 3).
         lower: rear right corners in the sole frames (F, 2), m.
         upper: front left corners likewise (F, 2), m.
+        sole_height: height of the ground under each sole (F,), m.
+        margin: m.
     """
-    height = position[:, 2].copy()
-    for foot in range(len(height)):
+    near = np.empty(len(position), dtype=np.bool_)
+    for foot in range(len(position)):
+        height = position[foot, 2] - sole_height[foot]
         for k in range(2):
             slope = rotation[foot, 2, k]
-            height[foot] += min(slope * lower[foot, k], slope * upper[foot, k])
-    return height
+            height += min(slope * lower[foot, k], slope * upper[foot, k])
+        near[foot] = height < margin
+    return near
 
 
 @compiled(f"{_MATRIX}({_MATRIX})")
@@ -248,3 +259,84 @@ def foot_wrenches(
             rate[i] += forces[foot, i]
             rate[3 + i] += about_com[i] + wrenches[foot, 3 + i]
     return wrenches, rate
+
+
+@compiled(
+    f"Tuple(({_MATRIX}, {_VECTOR}, b1))("
+    # the feet: from the CoM to ankles and soles, axes, ankles, safe soles
+    f"{_MATRIX}, {_MATRIX}, {_STACK}, {_MATRIX}, {_MATRIX}, {_MATRIX}, "
+    # what is asked for, and the bounds
+    f"{_VECTOR}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_VECTOR}, "
+    # largest normal moment, the four weights, the robot's weight, what residuals may be
+    f"f8, f8, f8, f8, f8, f8, f8)"
+)
+def quiet_share(
+    arms: np.ndarray,
+    com_to_sole: np.ndarray,
+    rotation: np.ndarray,
+    ankle_in_sole: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    force: np.ndarray,
+    angular_rate: np.ndarray,
+    pyramid: np.ndarray,
+    least: np.ndarray,
+    largest: np.ndarray,
+    normal_moment: float,
+    angular_weight: float,
+    small_force_weight: float,
+    shift_weight: float,
+    moment_weight: float,
+    weight: float,
+    tolerance: float,
+) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Both stages in one call, for the feet of a quiet tick, which press against no bound.
+
+    Args:
+        arms: a_i from the CoM to the ankles (S, 3), m.
+        com_to_sole: from the CoM to the sole origins (S, 3), m.
+        rotation: axes of the soles in the world (S, 3, 3).
+        ankle_in_sole: ankles in the sole frames (S, 3), m.
+        lower: least shifts of the CoP (S, 2), m.
+        upper: largest shifts (S, 2), m.
+        force: f (3,), N.
+        angular_rate: dk/dt (3,), N m.
+        pyramid: rows that bound a force in sole axes (m, 3).
+        least: lower bounds of stage 1 (3 S + S m,), N.
+        largest: upper bounds likewise.
+        normal_moment: largest normal moment per normal force, m.
+        angular_weight: of stage 1, 1/m.
+        small_force_weight: of stage 1.
+        shift_weight: of stage 2, N.
+        moment_weight: of stage 2.
+        weight: m g, N.
+        tolerance: what the residuals of optimality may be.
+
+    Returns:
+        What `foot_wrenches` returns, and whether both programs are certified to have their answer in it.
+    """
+    nothing, no_rows = np.zeros(0, dtype=np.bool_), np.zeros((0, 3 * len(rotation)))
+    hessian, gradient, rows = force_program(
+        arms, rotation, force, angular_rate, pyramid, angular_weight, small_force_weight
+    )
+    forces, _, primal, dual, gap = judged_minimum(hessian, gradient, rows, least, largest, nothing)
+    certified = primal <= tolerance and dual <= tolerance and gap <= tolerance
+    shared = forces.reshape(-1, 3)
+    hessian, gradient, low, high = cop_program(
+        shared,
+        rotation,
+        arms,
+        angular_rate,
+        ankle_in_sole,
+        lower,
+        upper,
+        normal_moment,
+        shift_weight,
+        moment_weight,
+    )
+    shifts, _, primal, dual, gap = judged_minimum(hessian, gradient, no_rows, low, high, nothing)
+    certified = certified and primal <= tolerance and dual <= tolerance and gap <= tolerance
+    wrenches, rate = foot_wrenches(
+        shared, shifts.reshape(-1, 3), rotation, ankle_in_sole, com_to_sole, weight
+    )
+    return wrenches, rate, certified

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute
+from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute, gram, solved
 from momentum_lab.compiled import compiled
 
 _MATRIX, _VECTOR = "f8[:, ::1]", "f8[::1]"
@@ -21,7 +21,7 @@ def minimum_on_equalities(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The minimiser where only rows with equal bounds count: P x + c + A^T nu = 0 and A x = b.
 
-    With P = L L^T, y = L^-1 c and Y = L^-1 A^T: (Y^T Y) nu = -(b + Y^T y) and x = -L^-T (y + Y nu).
+    With P = L L^T, y = L^-1 c and Y = A L^-T: (Y Y^T) nu = -(b + Y y) and x = -L^-T (y + Y^T nu).
 
     Args:
         hessian: P (n, n).
@@ -40,29 +40,20 @@ def minimum_on_equalities(
     factor = hessian.copy()
     if not factorize(factor):
         return x, multipliers
-    columns = np.empty((size, count + 1))
-    for i in range(size):
-        for j in range(count):
-            columns[i, j] = matrix[equal[j], i]
-        columns[i, count] = gradient[i]
-    forward_substitute(factor, columns)
-    schur, pressure = np.zeros((count, count)), np.zeros((count, 1))
-    for i in range(size):
-        for j in range(count):
-            for k in range(j, count):
-                schur[k, j] += columns[i, j] * columns[i, k]
-            pressure[j, 0] -= columns[i, j] * columns[i, count]
+    rows = np.empty((count + 1, size))
+    rows[:count], rows[count] = matrix[equal], gradient
+    forward_substitute(factor, rows)
+    products = gram(rows)
+    schur, nu = products[:count, :count].copy(), -products[count, :count]
     for j in range(count):
-        pressure[j, 0] -= lower[size + equal[j]]
+        nu[j] -= lower[size + equal[j]]
     if not factorize(schur):
         return x, multipliers
-    forward_substitute(schur, pressure)
-    nu = pressure[:, 0].copy()
-    backward_substitute(schur, nu)
-    for i in range(size):
-        x[i] = -columns[i, count]
-        for j in range(count):
-            x[i] -= columns[i, j] * nu[j]
+    nu = solved(schur, nu)
+    x[:] = -rows[count]
+    for j in range(count):
+        for i in range(size):
+            x[i] -= rows[j, i] * nu[j]
     backward_substitute(factor, x)
     for j in range(count):
         multipliers[size + equal[j]] = nu[j]
@@ -125,3 +116,26 @@ def residuals(
         far += x[i] ** 2
     scale = 1.0 + math.sqrt(max(curved, steep))
     return violation, math.sqrt(stationarity) / scale, gap / (scale * (1.0 + math.sqrt(far)))
+
+
+@compiled(
+    f"Tuple(({_VECTOR}, {_VECTOR}, f8, f8, f8))({_MATRIX}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_VECTOR}, b1[::1])"
+)
+def judged_minimum(
+    hessian: np.ndarray,
+    gradient: np.ndarray,
+    matrix: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    soft: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, float, float, float]:
+    """The minimiser on the equalities alone and its residuals on the whole program: two steps in one call.
+
+    Shapes and units of the arguments are those of `residuals`.
+
+    Returns:
+        x (n,), multipliers (n + m,); primal, dual and complementarity residual, NaN without a unique minimiser.
+    """
+    x, multipliers = minimum_on_equalities(hessian, gradient, matrix, lower, upper)
+    primal, dual, gap = residuals(hessian, gradient, matrix, lower, upper, soft, x, multipliers)
+    return x, multipliers, primal, dual, gap

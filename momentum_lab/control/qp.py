@@ -10,7 +10,7 @@ import numpy as np
 import qpsolvers
 from scipy.sparse import csc_matrix
 
-from momentum_lab.control.optimality import minimum_on_equalities, residuals
+from momentum_lab.control.optimality import judged_minimum, residuals
 from momentum_lab.errors import SolverError
 
 _EQUALITY = 5
@@ -25,8 +25,9 @@ _REASONS = {
 }
 _UNBOUNDED = 1e30
 _NOTHING = np.zeros(0, dtype=bool)
+Numbers = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 # An answer is accepted when every condition of optimality holds to this, relative to the problem's own size.
-_CERTIFIED = 1e-6
+CERTIFIED = 1e-6
 # Clarabel's own 1e-8 leaves flat directions of Eq. 34 wrong in the fifth digit.
 _REFERENCE = 1e-11
 
@@ -116,41 +117,34 @@ def solve(problem: QuadraticProgram) -> Solution:
             or the residuals are too large.
     """
     for road in (_on_equalities, _active_set):
-        x, multipliers = road(problem)
-        certificate = certify(problem, x, multipliers)
-        if certificate.worst <= _CERTIFIED:
-            return Solution(x, multipliers, certificate)
-    raise SolverError(f"the solver's answer misses optimality by {certificate.worst:.1e}")
+        solution = road(problem)
+        if solution.certificate.worst <= CERTIFIED:
+            return solution
+    raise SolverError(f"the solver's answer misses optimality by {solution.certificate.worst:.1e}")
 
 
 def certify(problem: QuadraticProgram, x: np.ndarray, multipliers: np.ndarray) -> Certificate:
     """Residuals of the optimality conditions at x (n,) with multipliers (n + m,)."""
-    return Certificate(
-        *residuals(
-            problem.hessian,
-            problem.gradient,
-            problem.matrix,
-            problem.lower,
-            problem.upper,
-            _NOTHING if problem.soft is None else problem.soft,
-            x,
-            multipliers,
-        )
-    )
+    return Certificate(*residuals(*_numbers(problem), x, multipliers))
 
 
-def _on_equalities(problem: QuadraticProgram) -> tuple[np.ndarray, np.ndarray]:
-    """Minimiser (n,) and multipliers (n + m,) as if there were no inequalities; NaN if it is not unique.
+def _numbers(problem: QuadraticProgram) -> Numbers:
+    """The program as compiled functions take it."""
+    soft = _NOTHING if problem.soft is None else problem.soft
+    return problem.hessian, problem.gradient, problem.matrix, problem.lower, problem.upper, soft
+
+
+def _on_equalities(problem: QuadraticProgram) -> Solution:
+    """Minimiser and multipliers as if there were no inequalities; NaN if it is not unique.
 
     Variables with equal bounds are left to the other road.
     """
-    return minimum_on_equalities(
-        problem.hessian, problem.gradient, problem.matrix, problem.lower, problem.upper
-    )
+    x, multipliers, primal, dual, gap = judged_minimum(*_numbers(problem))
+    return Solution(x, multipliers, Certificate(primal, dual, gap))
 
 
-def _active_set(problem: QuadraticProgram) -> tuple[np.ndarray, np.ndarray]:
-    """Minimiser (n,) and multipliers (n + m,) by DAQP.
+def _active_set(problem: QuadraticProgram) -> Solution:
+    """Minimiser and multipliers by DAQP.
 
     Raises:
         SolverError: there is no point within all bounds, or DAQP gives up.
@@ -165,7 +159,7 @@ def _active_set(problem: QuadraticProgram) -> tuple[np.ndarray, np.ndarray]:
         raise SolverError(_what_stands_in_the_way(problem))
     if exit_flag < 1:
         raise SolverError(f"the solver stopped without an answer: {_REASONS.get(exit_flag, exit_flag)}")
-    return x, info["lam"]
+    return Solution(x, info["lam"], certify(problem, x, info["lam"]))
 
 
 def solve_reference(problem: QuadraticProgram) -> np.ndarray:

@@ -42,14 +42,20 @@ class StandingGoal:
 
     def reference(self, dynamics: Dynamics) -> Reference:
         """The goal for a state whose soles are where `dynamics` says, on level ground at height 0."""
-        com, heading = self._place(dynamics)
-        com[2] = self._height
+        com, pelvis = standing_goal(
+            dynamics.sole_position,
+            dynamics.sole_rotation,
+            self._centers,
+            self._share,
+            self._height,
+            self._pelvis,
+        )
         return Reference(
             com=com,
             com_velocity=self._still,
             angular_momentum=self._still,
             posture=self.posture,
-            pelvis_rotation=turned_about_vertical(heading, self._pelvis),
+            pelvis_rotation=pelvis,
             stance=self.stance,
             sole_height=self._level,
             controlled=self.controlled,
@@ -87,3 +93,27 @@ def turned_about_vertical(angle: float, rotation: np.ndarray) -> np.ndarray:
     turned[1] = s * rotation[0] + c * rotation[1]
     turned[2] = rotation[2]
     return turned
+
+
+@compiled("Tuple((f8[::1], f8[:, ::1]))(f8[:, ::1], f8[:, :, ::1], f8[:, ::1], f8[::1], f8, f8[:, ::1])")
+def standing_goal(
+    position: np.ndarray,
+    rotation: np.ndarray,
+    centers: np.ndarray,
+    share: np.ndarray,
+    com_height: float,
+    pelvis: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """r_d (3,), m, above the middle of the stance feet, and pelvis axes (3, 3) that face where they face.
+
+    Args:
+        position: see `stance_place` for this and the next three (F, 3), m.
+        rotation: (F, 3, 3).
+        centers: (F, 3), m.
+        share: (F,).
+        com_height: of r_d, m.
+        pelvis: pelvis axes of a robot that faces along x (3, 3).
+    """
+    com, heading = stance_place(position, rotation, centers, share)
+    com[2] = com_height
+    return com, turned_about_vertical(heading, pelvis)

@@ -177,9 +177,7 @@ def cop_from_momentum_rate(
     Returns:
         (p_x, p_y) in the world (2,), m; NaN without a normal force.
     """
-    return np.array(
-        cop_coordinates(ground_wrench_from_momentum_rate(momentum_rate, mass), com_in_world, ground_height)
-    )
+    return _cop_of_rate(momentum_rate, com_in_world, mass, ground_height)
 
 
 def cmp_from_force(force: np.ndarray, com_in_world: np.ndarray, ground_height: float = 0.0) -> np.ndarray:
@@ -255,3 +253,11 @@ def cmp_coordinates(force: np.ndarray, com_in_world: np.ndarray, ground_height: 
         return math.nan, math.nan
     slope = (rz - ground_height) / fz
     return rx - fx * slope, ry - fy * slope
+
+
+@compiled("f8[::1](f8[:], f8[:], f8, f8)")
+def _cop_of_rate(
+    momentum_rate: np.ndarray, com_in_world: np.ndarray, mass: float, ground_height: float
+) -> np.ndarray:
+    wrench = ground_wrench_from_momentum_rate(momentum_rate, mass)
+    return np.array(cop_coordinates(wrench, com_in_world, ground_height))

@@ -11,10 +11,12 @@ import math
 
 import numpy as np
 
+from momentum_lab.compiled import compiled
 from momentum_lab.errors import InputError
 from momentum_lab.momentum.ground import GRAVITY
 
 
+@compiled("f8(f8)")
 def pendulum_frequency(com_height: float) -> float:
     """The rate at which a linear inverted pendulum falls.
 
@@ -44,10 +46,18 @@ def capture_point(
     Returns:
         (xi_x, xi_y) in the world (2,), m; NaN with the CoM below the ground.
     """
-    rx, ry, rz = com_in_world.tolist()
-    vx, vy, _ = com_velocity.tolist()
+    return np.array(capture_coordinates(com_in_world, com_velocity, ground_height))
+
+
+@compiled("UniTuple(f8, 2)(f8[:], f8[:], f8)")
+def capture_coordinates(
+    com_in_world: np.ndarray, com_velocity: np.ndarray, ground_height: float
+) -> tuple[float, float]:
+    """See `capture_point`."""
+    rx, ry, rz = com_in_world
+    vx, vy, _ = com_velocity
     omega = pendulum_frequency(rz - ground_height)
-    return np.array((rx + vx / omega, ry + vy / omega))
+    return rx + vx / omega, ry + vy / omega
 
 
 def predict_dcm(dcm: np.ndarray, cmp: np.ndarray, omega: float, duration: float) -> np.ndarray:

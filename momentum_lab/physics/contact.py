@@ -21,7 +21,7 @@ from functools import lru_cache
 import numpy as np
 import pinocchio as pin
 
-from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute, solved
+from momentum_lab.cholesky import backward_substitute, factorize, forward_substitute, gram, solved
 from momentum_lab.compiled import compiled
 from momentum_lab.errors import SimulationError
 
@@ -55,7 +55,7 @@ class Contacts:
     frame_jacobian: np.ndarray
     spread: np.ndarray
     gap: np.ndarray
-    friction: tuple[float, ...]
+    friction: np.ndarray
 
     @property
     def jacobian(self) -> np.ndarray:
@@ -104,34 +104,46 @@ def solve_contact(
     Raises:
         SimulationError: H is not positive definite, that is: the state is not finite any more.
     """
+    answer = resting(
+        mass_matrix,
+        free_impulse,
+        velocity,
+        contacts.frame_jacobian,
+        contacts.spread,
+        contacts.gap,
+        contacts.friction,
+        timestep,
+    )
+    if answer[-1] <= _PRECISION:
+        return ContactSolution(*answer, iterations=0)
+    return _sliding(mass_matrix, free_impulse, velocity, contacts, closing_speed(contacts.gap, timestep))
+
+
+def _sliding(
+    mass_matrix: np.ndarray,
+    free_impulse: np.ndarray,
+    velocity: np.ndarray,
+    contacts: Contacts,
+    closing: np.ndarray,
+) -> ContactSolution:
+    """The same by a solver, for points that slide, lift, or come to rest under other impulses than the smallest."""
     factor = mass_matrix.copy()
     if not factorize(factor):
         raise SimulationError(
             "the mass matrix is not positive definite: the state has left the finite numbers"
         )
-    if not contacts.gap.size:
-        free_velocity = velocity + solved(factor, free_impulse.reshape(-1, 1)).ravel()
-        return ContactSolution(free_velocity, np.zeros((0, 3)), np.zeros((0, 6)), 0.0, 0)
     free_velocity, half, coupling, drift = contact_problem(
         factor, free_impulse, velocity, contacts.frame_jacobian
     )
-    closing = closing_speed(contacts.gap, timestep)
-    impulse, residual = sticking_impulse(
-        coupling, drift, contacts.spread, closing, _coefficients(contacts.friction)
-    )
-    iterations = 0
-    if not residual <= _PRECISION:
-        solver = _solve_cones(coupling, drift, closing, contacts)
-        impulse = solver.getPrimalSolution().copy()  # read-only
-        residual = float(solver.getAbsoluteConvergenceResidual())
-        iterations = int(solver.getIterationCount())
+    solver = _solve_cones(coupling, drift, closing, contacts)
+    impulse = solver.getPrimalSolution().copy()  # read-only
     velocity, frame_impulse = moved(factor, half, free_velocity, contacts.spread, impulse)
     return ContactSolution(
         velocity=velocity,
         impulse=impulse.reshape(-1, 3),
         frame_impulse=frame_impulse,
-        residual=residual,
-        iterations=iterations,
+        residual=float(solver.getAbsoluteConvergenceResidual()),
+        iterations=int(solver.getIterationCount()),
     )
 
 
@@ -139,7 +151,7 @@ def solve_contact(
 def contact_problem(
     factor: np.ndarray, free_impulse: np.ndarray, velocity: np.ndarray, frame_jacobian: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Velocity without contact, L^-1 J_f^T, and C and d of the frames' velocities C w + d under impulses w.
+    """Velocity without contact, J_f L^-T, and C and d of the frames' velocities C w + d under impulses w.
 
     Args:
         factor: L with L L^T = H (nv, nv).
@@ -148,24 +160,14 @@ def contact_problem(
         frame_jacobian: J_f (6 B, nv).
 
     Returns:
-        v + H^-1 p (nv,), L^-1 J_f^T (nv, 6 B), C = J_f H^-1 J_f^T (6 B, 6 B), d = J_f (v + H^-1 p) (6 B,).
+        v + H^-1 p (nv,), J_f L^-T (6 B, nv), C = J_f H^-1 J_f^T (6 B, 6 B), d = J_f (v + H^-1 p) (6 B,).
     """
-    size, frames = velocity.size, len(frame_jacobian)
-    columns = np.empty((size, frames + 1))
-    for i in range(size):
-        for j in range(frames):
-            columns[i, j] = frame_jacobian[j, i]
-        columns[i, frames] = free_impulse[i]
-    forward_substitute(factor, columns)
-    half, free_velocity = columns[:, :frames].copy(), columns[:, frames].copy()
+    rows = np.concatenate((frame_jacobian, free_impulse.copy().reshape(1, -1)))
+    forward_substitute(factor, rows)
+    half, free_velocity = rows[:-1], rows[-1].copy()
     backward_substitute(factor, free_velocity)
     free_velocity += velocity
-    coupling = np.zeros((frames, frames))
-    for i in range(size):
-        for j in range(frames):
-            for k in range(frames):
-                coupling[j, k] += half[i, j] * half[i, k]
-    return free_velocity, half, coupling, frame_jacobian @ free_velocity
+    return free_velocity, half, gram(half), frame_jacobian @ free_velocity
 
 
 @compiled(f"Tuple(({_VECTOR}, {_MATRIX}))({_MATRIX}, {_MATRIX}, {_VECTOR}, {_MATRIX}, {_VECTOR})")
@@ -180,13 +182,13 @@ def moved(
 
     Args:
         factor: L with L L^T = H (nv, nv).
-        half: L^-1 J_f^T (nv, 6 B).
+        half: J_f L^-T (6 B, nv).
         free_velocity: v + H^-1 p (nv,).
         spread: S (3 n, 6 B).
         impulse: lambda (3 n,), N s.
     """
     frame_impulse = impulse @ spread
-    change = half @ frame_impulse
+    change = frame_impulse @ half
     backward_substitute(factor, change)
     return free_velocity + change, frame_impulse.reshape(-1, 6)
 
@@ -212,21 +214,16 @@ def sticking_impulse(
         lambda (3 n,), N s, and the largest entry of S (C w + d) + c, m/s; NaN if lambda does not do.
     """
     rows, frames = spread.shape
-    gram, mean = np.zeros((frames, frames)), np.zeros((frames, 1))
-    for i in range(rows):
-        for j in range(frames):
-            if i % 3 == 2:
-                mean[j, 0] += spread[i, j] * closing[i // 3]
-            for k in range(frames):
-                gram[j, k] += spread[i, j] * spread[i, k]
-    factor = coupling.copy()
-    if not (factorize(gram) and factorize(factor)):
+    columns = np.ascontiguousarray(spread.T)
+    square, factor, mean = gram(columns), coupling.copy(), np.zeros(frames)
+    if not (factorize(square) and factorize(factor)):
         return np.zeros(rows), np.nan
-    needed = solved(gram, mean)
-    needed[:, 0] = -drift - needed[:, 0]
-    frame_impulse = solved(factor, needed)
-    left = coupling @ frame_impulse[:, 0].copy() + drift
-    impulse = spread @ solved(gram, frame_impulse)[:, 0].copy()
+    for j in range(frames):
+        for point in range(rows // 3):
+            mean[j] += columns[j, 3 * point + 2] * closing[point]
+    frame_impulse = solved(factor, -drift - solved(square, mean))
+    left = coupling @ frame_impulse + drift
+    impulse = spread @ solved(square, frame_impulse)
     residual = 0.0
     for point in range(rows // 3):
         x, y, normal = impulse[3 * point : 3 * point + 3]
@@ -254,6 +251,41 @@ def closing_speed(gap: np.ndarray, timestep: float) -> np.ndarray:
     return speed
 
 
+@compiled(
+    f"Tuple(({_VECTOR}, {_MATRIX}, {_MATRIX}, f8))"
+    f"({_MATRIX}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_VECTOR}, f8)"
+)
+def resting(
+    mass_matrix: np.ndarray,
+    free_impulse: np.ndarray,
+    velocity: np.ndarray,
+    frame_jacobian: np.ndarray,
+    spread: np.ndarray,
+    gap: np.ndarray,
+    friction: np.ndarray,
+    timestep: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """The end of a step in which all points come to rest, or in which there are none: all in one call.
+
+    Shapes and units of the arguments are those of `solve_contact` and `Contacts`.
+
+    Returns:
+        Velocity (nv,), point impulses (n, 3), frame impulses (B, 6) and residual, see `ContactSolution`; the
+        residual is NaN if H is not positive definite or the points do not come to rest so.
+    """
+    points = len(gap)
+    factor = mass_matrix.copy()
+    if not factorize(factor):
+        return velocity, np.zeros((points, 3)), np.zeros((len(frame_jacobian) // 6, 6)), np.nan
+    free_velocity, half, coupling, drift = contact_problem(factor, free_impulse, velocity, frame_jacobian)
+    if not points:
+        return free_velocity, np.zeros((0, 3)), np.zeros((0, 6)), 0.0
+    closing = closing_speed(gap, timestep)
+    impulse, residual = sticking_impulse(coupling, drift, spread, closing, friction)
+    end, frame_impulse = moved(factor, half, free_velocity, spread, impulse)
+    return end, impulse.reshape(-1, 3), frame_impulse, residual
+
+
 def _solve_cones(
     coupling: np.ndarray, drift: np.ndarray, closing: np.ndarray, contacts: Contacts
 ) -> pin.ADMMContactSolver:
@@ -267,13 +299,9 @@ def _solve_cones(
     solver.setAbsolutePrecision(precision)
     solver.setRelativePrecision(1e-3 * precision)
     solver.setMaxIterations(_MAX_ITERATIONS)
-    solver.solve(pin.DelassusOperatorDense(delassus), drift, _cones(contacts.friction), _no_compliance(size))
+    cones = _cones(tuple(contacts.friction.tolist()))
+    solver.solve(pin.DelassusOperatorDense(delassus), drift, cones, _no_compliance(size))
     return solver
-
-
-@lru_cache(maxsize=64)
-def _coefficients(friction: tuple[float, ...]) -> np.ndarray:
-    return np.array(friction)
 
 
 @lru_cache(maxsize=64)

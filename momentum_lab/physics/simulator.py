@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from momentum_lab.compiled import compiled
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.wrench import shift_wrench, sum_wrenches
-from momentum_lab.physics.contact import Contacts, solve_contact
+from momentum_lab.physics.contact import solve_contact
 from momentum_lab.physics.ground import Ground
 from momentum_lab.physics.joint_stops import JointStops, joint_stops
-from momentum_lab.physics.push import AppliedPush, Push, apply_pushes
-from momentum_lab.physics.touch import BodyPoints, Touch, sole_touches
+from momentum_lab.physics.push import Push, apply_pushes
+from momentum_lab.physics.touch import BodyPoints, SolePoints, Touches, together
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
-
-_WORLD_ORIGIN = np.zeros(3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,8 @@ class Simulator:
         self.robot = robot
         self.ground = ground
         self.timestep = timestep
-        self._least_torque = -robot.effort_limit
+        self._weight = robot.mass * GRAVITY
+        self._soles = SolePoints(robot, ground)
         self._bodies = BodyPoints(robot, timestep)
         self._push_data = robot.model.createData()
 
@@ -69,27 +70,30 @@ class Simulator:
         Raises:
             SimulationError: the state is not finite any more.
         """
-        torque = np.minimum(np.maximum(torque, self._least_torque), self.robot.effort_limit)
+        torque, force = driven(torque, self.robot.effort_limit, dynamics.nonlinear_effects)
         push = apply_pushes(self.robot, self._push_data, dynamics, pushes, time, self.timestep)
+        if push is not None:
+            force += push.generalized
         stops = joint_stops(self.robot, dynamics, self.timestep)
-        mass_matrix, force = _free_motion(dynamics, torque, push, stops)
-        touching = sole_touches(self.robot, dynamics, self.ground)
-        touching += self._bodies.touches(dynamics.state, self.ground.floor)
+        mass_matrix = dynamics.mass_matrix if stops is None else _stopped(dynamics.mass_matrix, force, stops)
+        touches = self._touches(dynamics)
         solution = solve_contact(
-            mass_matrix,
-            self.timestep * force,
-            dynamics.state.v,
-            _together(touching, self.robot.nv),
-            self.timestep,
+            mass_matrix, self.timestep * force, dynamics.state.v, touches.contacts, self.timestep
         )
         q = self.robot.integrate(dynamics.state.q, self.timestep * solution.velocity)
         state = State(q, solution.velocity)
         self._bodies.follow(state)
-        feet, others = self._contact_wrenches(touching, solution.frame_impulse / self.timestep)
         pushed = np.zeros(6) if push is None else push.wrench
-        rate = sum_wrenches(feet, dynamics.sole_position, dynamics.com_in_world)
-        rate += shift_wrench(others + pushed, _WORLD_ORIGIN, dynamics.com_in_world)
-        rate[2] -= self.robot.mass * GRAVITY
+        feet, others, rate = external_wrenches(
+            solution.frame_impulse,
+            self.timestep,
+            touches.foot,
+            touches.origin,
+            pushed,
+            dynamics.sole_position,
+            dynamics.com_in_world,
+            self._weight,
+        )
         return Step(
             state=state,
             torque=torque,
@@ -101,55 +105,83 @@ class Simulator:
             contact_residual=solution.residual,
         )
 
+    def _touches(self, dynamics: Dynamics) -> Touches:
+        """All points that may touch: soles, and other bodies in a fall."""
+        soles = self._soles.touches(dynamics)
+        bodies = self._bodies.touches(dynamics.state, self.ground.floor)
+        return soles if bodies is None else together(soles, bodies)
+
     def _stop_torque(self, dynamics: Dynamics, state: State, stops: JointStops | None) -> np.ndarray:
         if stops is None:
             return np.zeros(self.robot.na)
         return stops.felt_torque((state.v - dynamics.state.v) / self.timestep)
 
-    def _contact_wrenches(self, touching: list[Touch], wrenches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Ground on each foot about its sole (F, 6), and on all else about the world origin (6,).
 
-        `wrenches` (B, 6) are those on the touching bodies in their order, about the origins of their frames.
-        """
-        feet, others = np.zeros((len(self.robot.soles), 6)), np.zeros(6)
-        for touch, wrench in zip(touching, wrenches, strict=True):
-            if touch.foot is None:
-                others += shift_wrench(wrench, touch.origin, _WORLD_ORIGIN)
-            else:
-                feet[touch.foot] = wrench
-        return feet, others
-
-
-def _free_motion(
-    dynamics: Dynamics, torque: np.ndarray, push: AppliedPush | None, stops: JointStops | None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Mass matrix (nv, nv) and force (nv,) of the robot without contact."""
-    force = -dynamics.nonlinear_effects
-    force[6:] += torque
-    if push is not None:
-        force += push.generalized
-    if stops is None:
-        return dynamics.mass_matrix, force
-    mass_matrix = dynamics.mass_matrix.copy()
+def _stopped(mass_matrix: np.ndarray, force: np.ndarray, stops: JointStops) -> np.ndarray:
+    """Mass matrix (nv, nv) with joint stops; the force (nv,) is given theirs, too."""
+    mass_matrix = mass_matrix.copy()
     mass_matrix[stops.rows, stops.rows] += stops.added_inertia
     force[stops.rows] += stops.torque
-    return mass_matrix, force
+    return mass_matrix
 
 
-def _together(touching: list[Touch], nv: int) -> Contacts:
-    """All points that may touch as one problem."""
-    if not touching:
-        return Contacts(np.zeros((0, nv)), np.zeros((0, 0)), np.zeros(0), ())
-    gap = np.concatenate([touch.gap for touch in touching])
-    spread = np.zeros((3 * gap.size, 6 * len(touching)))
-    friction: tuple[float, ...] = ()
-    for body, touch in enumerate(touching):
-        row = 3 * len(friction)
-        friction += (touch.patch.friction,) * touch.gap.size
-        spread[row : 3 * len(friction), 6 * body : 6 * body + 6] = touch.spread
-    return Contacts(
-        frame_jacobian=np.concatenate([touch.frame_jacobian for touch in touching]),
-        spread=spread,
-        gap=gap,
-        friction=friction,
-    )
+@compiled("UniTuple(f8[::1], 2)(f8[::1], f8[::1], f8[::1])")
+def driven(
+    torque: np.ndarray, effort_limit: np.ndarray, nonlinear_effects: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Torques within the motors' limits (na,), and with gravity and velocities the force S tau - C v - tau_g (nv,).
+
+    Args:
+        torque: asked for (na,), N m.
+        effort_limit: tau_max (na,), N m.
+        nonlinear_effects: C v + tau_g (nv,), N and N m.
+    """
+    given, force = torque.copy(), -nonlinear_effects
+    for joint in range(torque.size):
+        limit = effort_limit[joint]
+        if abs(torque[joint]) > limit:
+            given[joint] = math.copysign(limit, torque[joint])
+        force[6 + joint] += given[joint]
+    return given, force
+
+
+@compiled(
+    "Tuple((f8[:, ::1], f8[::1], f8[::1]))"
+    "(f8[:, ::1], f8, i8[::1], f8[:, ::1], f8[::1], f8[:, ::1], f8[::1], f8)"
+)
+def external_wrenches(
+    frame_impulse: np.ndarray,
+    timestep: float,
+    foot: np.ndarray,
+    origin: np.ndarray,
+    pushed: np.ndarray,
+    sole_position: np.ndarray,
+    com: np.ndarray,
+    weight: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What acts on the robot from outside, and the momentum rate it causes (Eqs. 1, 2).
+
+    Args:
+        frame_impulse: of the ground on the touching bodies about the origins of their frames (B, 6).
+        timestep: dt, s.
+        foot: which foot each of them is; -1 for other bodies (B,).
+        origin: origins of their frames (B, 3), m.
+        pushed: wrench of the pushes about the world origin (6,), N and N m.
+        sole_position: sole origins (F, 3), m.
+        com: r_G (3,), m.
+        weight: m g, N.
+
+    Returns:
+        Ground on each foot about its sole origin (F, 6), on all else about the world origin (6,), and
+        [dl/dt; dk/dt] about the CoM (6,), N and N m.
+    """
+    feet, others, world = np.zeros((len(sole_position), 6)), np.zeros(6), np.zeros(3)
+    for body in range(len(foot)):
+        wrench = frame_impulse[body] / timestep
+        if foot[body] < 0:
+            others += shift_wrench(wrench, origin[body], world)
+        else:
+            feet[foot[body]] = wrench
+    rate = sum_wrenches(feet, sole_position, com) + shift_wrench(others + pushed, world, com)
+    rate[2] -= weight
+    return feet, others, rate

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 import pinocchio as pin
+from scipy.linalg import block_diag
 
 from momentum_lab.compiled import compiled
+from momentum_lab.physics.contact import Contacts
 from momentum_lab.physics.ground import Ground, Patch
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
@@ -16,48 +19,50 @@ from momentum_lab.robot.state import Dynamics, State
 _MARGIN = 0.01
 # No point of a falling humanoid is faster than this, m/s; it bounds how long a clear body stays clear.
 _FASTEST = 20.0
+# Instead of a foot's index.
+_OTHER = np.array([-1])
+_MATRIX, _VECTOR, _STACK = "f8[:, ::1]", "f8[::1]", "f8[:, :, ::1]"
 
 
 @dataclass(frozen=True, slots=True)
-class Touch:
-    """Points of one body on one plane.
+class Touches:
+    """Points of B bodies on the ground, body after body.
 
     Attributes:
+        contacts: how they move and how far they are from the ground.
         position: the points in the world (n, 3), m.
-        origin: the origin of the body's frame in the world (3,), m.
-        frame_jacobian: velocity of the body's frame, world-aligned (6, nv).
-        spread: from that to the velocities of the points in the axes of the plane, normal last (3 n, 6).
-        gap: their heights above the plane (n,), m.
-        patch: the plane.
-        foot: which foot it is; None for every other body.
+        origin: origins of the bodies' frames in the world (B, 3), m.
+        foot: which foot each body is; -1 for every other body (B,).
     """
 
+    contacts: Contacts
     position: np.ndarray
     origin: np.ndarray
-    frame_jacobian: np.ndarray
-    spread: np.ndarray
-    gap: np.ndarray
-    patch: Patch
-    foot: int | None = None
+    foot: np.ndarray
 
 
-def sole_touches(robot: RobotModel, dynamics: Dynamics, ground: Ground) -> list[Touch]:
-    """The four corners of each foot that is not wholly clear of the ground."""
-    touches = (
-        _sole_touch(sole.corners, dynamics, foot, ground.under_feet[foot])
-        for foot, sole in enumerate(robot.soles)
-    )
-    return [touch for touch in touches if touch is not None]
+class SolePoints:
+    """The four corners of each sole, over the planes of a ground."""
 
+    def __init__(self, robot: RobotModel, ground: Ground) -> None:
+        planes = ground.under_feet
+        self._corners = np.array([sole.corners for sole in robot.soles])
+        self._plane_origin = np.array([plane.origin for plane in planes])
+        self._plane_axes = np.array([plane.rotation for plane in planes])
+        self._friction = np.array([plane.friction for plane in planes])
 
-def _sole_touch(corners: np.ndarray, dynamics: Dynamics, foot: int, patch: Patch) -> Touch | None:
-    origin = dynamics.sole_position[foot]
-    position, gap, spread, lowest = placed_points(
-        corners, origin, dynamics.sole_rotation[foot], patch.origin, patch.rotation
-    )
-    if lowest > _MARGIN:
-        return None
-    return Touch(position, origin, dynamics.sole_jacobian[foot], spread, gap, patch, foot)
+    def touches(self, dynamics: Dynamics) -> Touches:
+        """The corners of all feet that are not wholly clear of the ground."""
+        jacobian, spread, gap, friction, position, origin, foot = placed_soles(
+            self._corners,
+            dynamics.sole_position,
+            dynamics.sole_rotation,
+            dynamics.sole_jacobian,
+            self._plane_origin,
+            self._plane_axes,
+            self._friction,
+        )
+        return Touches(Contacts(jacobian, spread, gap, friction), position, origin, foot)
 
 
 @compiled("f8[:, ::1](f8[:, ::1], f8[::1], f8[:, ::1])")
@@ -81,34 +86,75 @@ def spread_of(points: np.ndarray, origin: np.ndarray, axes: np.ndarray) -> np.nd
 
 
 @compiled(
-    "Tuple((f8[:, ::1], f8[::1], f8[:, ::1], f8))(f8[:, ::1], f8[::1], f8[:, ::1], f8[::1], f8[:, ::1])"
+    f"Tuple(({_MATRIX}, {_MATRIX}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_MATRIX}, i8[::1]))"
+    f"({_STACK}, {_MATRIX}, {_STACK}, {_STACK}, {_MATRIX}, {_STACK}, {_VECTOR})"
 )
-def placed_points(
-    points: np.ndarray,
+def placed_soles(
+    corners: np.ndarray,
     origin: np.ndarray,
     rotation: np.ndarray,
+    jacobian: np.ndarray,
     plane_origin: np.ndarray,
     plane_axes: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """Points of a frame over a plane.
+    friction: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The corners of the soles that have any of them near their plane, as B bodies.
 
     Args:
-        points: in the frame (n, 3), m.
-        origin: of the frame in the world (3,), m.
-        rotation: axes of the frame in the world (3, 3).
-        plane_origin: a point of the plane (3,), m.
-        plane_axes: axes of the plane, its normal last (3, 3).
+        corners: in the sole frames (F, 4, 3), m.
+        origin: of the soles in the world (F, 3), m.
+        rotation: axes of the soles in the world (F, 3, 3).
+        jacobian: of the soles, world-aligned (F, 6, nv).
+        plane_origin: a point of the plane under each foot (F, 3), m.
+        plane_axes: axes of those planes, their normals last (F, 3, 3).
+        friction: Coulomb coefficients of those planes (F,).
 
     Returns:
-        Positions in the world (n, 3), heights above the plane (n,), `spread_of` them (3 n, 6), least height, m.
+        J_f (6 B, nv), S (12 B, 6 B), gaps (4 B,), friction (4 B,), positions (4 B, 3), origins (B, 3), feet (B,).
     """
-    position, gap = np.empty_like(points), np.zeros(len(points))
-    for i in range(len(points)):
-        x, y, z = points[i]
-        for k in range(3):
-            position[i, k] = origin[k] + rotation[k, 0] * x + rotation[k, 1] * y + rotation[k, 2] * z
-            gap[i] += (position[i, k] - plane_origin[k]) * plane_axes[k, 2]
-    return position, gap, spread_of(position, origin, plane_axes), gap.min()
+    position, gap = np.empty_like(corners), np.zeros(corners.shape[:2])
+    near = np.zeros(len(corners), dtype=np.bool_)
+    for foot in range(len(corners)):
+        turn, axes = rotation[foot], plane_axes[foot]
+        for i in range(4):
+            x, y, z = corners[foot, i]
+            for k in range(3):
+                place = origin[foot, k] + turn[k, 0] * x + turn[k, 1] * y + turn[k, 2] * z
+                position[foot, i, k] = place
+                gap[foot, i] += (place - plane_origin[foot, k]) * axes[k, 2]
+            near[foot] |= not gap[foot, i] > _MARGIN
+    feet = np.flatnonzero(near)
+    bodies = len(feet)
+    spread = np.zeros((12 * bodies, 6 * bodies))
+    for body, foot in enumerate(feet):
+        spread[12 * body : 12 * body + 12, 6 * body : 6 * body + 6] = spread_of(
+            position[foot], origin[foot], plane_axes[foot]
+        )
+    return (
+        jacobian[feet].reshape(6 * bodies, jacobian.shape[2]),
+        spread,
+        gap[feet].ravel(),
+        np.repeat(friction[feet], 4),
+        position[feet].reshape(-1, 3),
+        origin[feet],
+        feet,
+    )
+
+
+def together(first: Touches, second: Touches) -> Touches:
+    """The points of two groups of bodies as one group."""
+    one, other = first.contacts, second.contacts
+    return Touches(
+        contacts=Contacts(
+            frame_jacobian=np.concatenate([one.frame_jacobian, other.frame_jacobian]),
+            spread=block_diag(one.spread, other.spread),
+            gap=np.concatenate([one.gap, other.gap]),
+            friction=np.concatenate([one.friction, other.friction]),
+        ),
+        position=np.concatenate([first.position, second.position]),
+        origin=np.concatenate([first.origin, second.origin]),
+        foot=np.concatenate([first.foot, second.foot]),
+    )
 
 
 class BodyPoints:
@@ -135,27 +181,30 @@ class BodyPoints:
         self._expected = state
         self._clearance -= self._step_length
 
-    def touches(self, state: State, floor: Patch) -> list[Touch]:
-        """The points near the floor, body by body."""
+    def touches(self, state: State, floor: Patch) -> Touches | None:
+        """The points near the floor, body by body; None when there are none."""
         if not self._points or (state is self._expected and self._clearance > _MARGIN):
-            return []
+            return None
         pin.computeJointJacobians(self._model, self._data, state.q)
         positions = [self._in_world(j, points) for j, points in zip(self._joints, self._points, strict=True)]
         gaps = [floor.gap(position) for position in positions]
         self._clearance = min(float(gap.min()) for gap in gaps)
-        return [
+        touches = [
             self._touch(joint, position[gap < _MARGIN], gap[gap < _MARGIN], floor)
             for joint, position, gap in zip(self._joints, positions, gaps, strict=True)
             if gap.min() < _MARGIN
         ]
+        return reduce(together, touches) if touches else None
 
     def _in_world(self, joint: int, points: np.ndarray) -> np.ndarray:
         placement = self._data.oMi[joint]
         return points @ placement.rotation.T + placement.translation
 
-    def _touch(self, joint: int, position: np.ndarray, gap: np.ndarray, floor: Patch) -> Touch:
+    def _touch(self, joint: int, position: np.ndarray, gap: np.ndarray, floor: Patch) -> Touches:
         jacobian = pin.getJointJacobian(
             self._model, self._data, joint, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
         )
         origin = self._data.oMi[joint].translation.copy()
-        return Touch(position, origin, jacobian, spread_of(position, origin, floor.rotation), gap, floor)
+        spread = spread_of(position, origin, floor.rotation)
+        contacts = Contacts(jacobian, spread, gap, np.full(gap.size, floor.friction))
+        return Touches(contacts, position, origin.reshape(1, 3), _OTHER)

@@ -9,13 +9,12 @@ from fnmatch import fnmatchcase
 import numpy as np
 import pinocchio as pin
 
-from momentum_lab.compiled import compiled
 from momentum_lab.errors import RobotError
 from momentum_lab.robot.catalog import FootSpec, RobotSpec, load_spec
 from momentum_lab.robot.state import Dynamics, State
+from momentum_lab.robot.terms import Frames, memory_of, state_terms
 from momentum_lab.robot.urdf import load_model, urdf_path
 
-_WORLD_ALIGNED = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 _BASE_DOF = 6
 
 
@@ -66,9 +65,9 @@ class RobotModel:
         self.position_upper = self.model.upperPositionLimit[7:].copy()
         self.effort_limit = self.model.effortLimit[_BASE_DOF:].copy()
         self.mass = float(pin.computeTotalMass(self.model))
-        self._weight = self.mass * self.model.gravity.linear
-        self._no_acceleration = np.zeros(self.nv)
-        self._sole_frames = [sole.frame for sole in self.soles]
+        self._gravity = self.model.gravity.linear.copy()
+        self._frames = Frames.of(self.model, [*(sole.frame for sole in self.soles), self.pelvis])
+        self._memory = memory_of(self.data)
         _check(self)
 
     @classmethod
@@ -130,43 +129,23 @@ class RobotModel:
         One pass of `crba` in world coordinates gives H, A_G, the CoM and all Jacobians. The drift of Eq. 20
         needs no second one: the six base rows of the equations of motion, taken about the CoM in world axes,
         are A_G a + dA_G v - m g, so dA_G v is what `nonLinearEffects` says there, without gravity (Eqs. 1, 2,
-        20, 29). The last pass is forward kinematics at zero joint acceleration, for the drift of frames
+        20, 29). On its way it has found how joints are accelerated while no joint is, for the drift of frames
         (Eqs. 31, 45).
         """
-        model, data, q, v = self.model, self.data, state.q, state.v
-        mass_matrix = pin.crba(model, data, q, pin.Convention.WORLD).copy()
-        centroidal_map = data.Ag.copy()
-        com = data.com[0].copy()
-        nonlinear_effects = pin.nonLinearEffects(model, data, q, v).copy()
-        pin.forwardKinematics(model, data, q, v, self._no_acceleration)
-        pin.updateFramePlacements(model, data)
-        base, frames = data.oMi[1], self._sole_frames
-        soles = [data.oMf[frame] for frame in frames]
-        momentum, bias, locked_inertia = centroidal_terms(
-            centroidal_map, nonlinear_effects, v, base.rotation, base.translation, com, self._weight
+        pin.crba(self.model, self.data, state.q, pin.Convention.WORLD)
+        pin.nonLinearEffects(self.model, self.data, state.q, state.v)
+        frames = self._frames
+        terms = state_terms(
+            *self._memory,
+            state.v,
+            frames.joint,
+            frames.moved_by,
+            frames.position,
+            frames.rotation,
+            self.mass,
+            self._gravity,
         )
-        return Dynamics(
-            state=state,
-            com_in_world=com,
-            com_velocity=momentum[:3] / self.mass,
-            centroidal_map=centroidal_map,
-            centroidal_bias=bias,
-            momentum=momentum,
-            locked_inertia=locked_inertia,
-            mass_matrix=mass_matrix,
-            nonlinear_effects=nonlinear_effects,
-            sole_position=np.array([sole.translation for sole in soles]),
-            sole_rotation=np.array([sole.rotation for sole in soles]),
-            sole_jacobian=np.array([pin.getFrameJacobian(model, data, f, _WORLD_ALIGNED) for f in frames]),
-            sole_bias=np.array([self._bias(f) for f in frames]),
-            pelvis_rotation=data.oMf[self.pelvis].rotation.copy(),
-            pelvis_jacobian=pin.getFrameJacobian(model, data, self.pelvis, _WORLD_ALIGNED),
-            pelvis_bias=self._bias(self.pelvis),
-        )
-
-    def _bias(self, frame: int) -> np.ndarray:
-        """Classical acceleration of a frame at zero joint acceleration (6,)."""
-        return pin.getFrameClassicalAcceleration(self.model, self.data, frame, _WORLD_ALIGNED).vector
+        return Dynamics(state, *terms)
 
     def _sole(self, name: str, foot: FootSpec) -> Sole:
         if foot.parent is not None:
@@ -181,51 +160,6 @@ class RobotModel:
             corners=corners,
             joints=self.matching_joints(foot.joints),
         )
-
-
-@compiled(
-    "Tuple((f8[::1], f8[::1], f8[:, ::1]))(f8[:, ::1], f8[::1], f8[::1], f8[:, :], f8[:], f8[::1], f8[::1])"
-)
-def centroidal_terms(
-    centroidal_map: np.ndarray,
-    nonlinear_effects: np.ndarray,
-    velocity: np.ndarray,
-    rotation: np.ndarray,
-    position: np.ndarray,
-    com: np.ndarray,
-    weight: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What A_G and the base rows of the equations of motion say about the momentum (Eqs. 15, 20, 29).
-
-    h_G = A_G v. The base rows of C v + tau_g, turned into world axes and taken about the CoM, are dA_G/dt v
-    and the weight held up. The base turned alone, with no joint moving, shows the inertia about the CoM.
-
-    Args:
-        centroidal_map: A_G (6, nv).
-        nonlinear_effects: C v + tau_g (nv,).
-        velocity: v (nv,).
-        rotation: axes of the base in the world (3, 3).
-        position: its origin (3,), m.
-        com: r_G (3,), m.
-        weight: m g (3,), N.
-
-    Returns:
-        h_G (6,), dA_G/dt v (6,), I_G (3, 3).
-    """
-    bias, inertia = np.zeros(6), np.zeros((3, 3))
-    for i in range(3):
-        for k in range(3):
-            bias[i] += rotation[i, k] * nonlinear_effects[k]
-            bias[3 + i] += rotation[i, k] * nonlinear_effects[3 + k]
-            for j in range(3):
-                inertia[i, j] += centroidal_map[3 + i, 3 + k] * rotation[j, k]
-    fx, fy, fz = bias[:3]
-    x, y, z = position - com
-    bias[3] += y * fz - z * fy
-    bias[4] += z * fx - x * fz
-    bias[5] += x * fy - y * fx
-    bias[:3] += weight
-    return centroidal_map @ velocity, bias, inertia
 
 
 def _add_frame(model: pin.Model, name: str, foot: FootSpec, parent: int) -> None:

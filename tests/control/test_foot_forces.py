@@ -7,7 +7,7 @@ import pinocchio as pin
 import pytest
 from scipy.spatial import ConvexHull
 
-from momentum_lab.control.foot_forces import Footing, ForceBounds
+from momentum_lab.control.foot_forces import Footing, ForceBounds, _cops, _forces
 from momentum_lab.robot.state import State
 from tests.conftest import assert_close
 from tests.control.situations import BOTH, G, home, swaying
@@ -50,6 +50,23 @@ def test_wrenches_and_momentum_rate_tell_the_same(robot, rng, stance):
         assert_close(momentum_rate(robot, dynamics, answer.wrench), answer.momentum_rate, 1e-9)
         for foot in {0, 1} - set(stance):
             assert_close(answer.wrench[foot], np.zeros(6), 0.0)
+
+
+def test_both_stages_in_one_call_answer_what_two_programs_answer(robot, rng):
+    """Where no bound presses; where one does, the call does not claim to have the answer."""
+    dynamics, footing = swaying(robot, rng), Footing(robot)
+    feet, certified = footing.stance_feet(dynamics, BOTH, BORDER), 0
+    for force, angular_rate in demands(robot, rng, count=200):
+        wrenches, rate, claimed = footing._quietly(feet, force, angular_rate, BOUNDS)
+        forces = _forces(feet, force, angular_rate, BOUNDS)
+        staged = footing._recombine(feet, forces, _cops(feet, forces, angular_rate, BOUNDS))
+        difference = np.abs(wrenches - staged.wrench).max()
+        assert claimed == (difference < 1e-3)
+        if claimed:
+            assert_close(wrenches, staged.wrench, 1e-9 * robot.mass * G)
+            assert_close(rate, staged.momentum_rate, 1e-9 * robot.mass * G)
+        certified += claimed
+    assert 3 < certified < 197
 
 
 @pytest.mark.parametrize("stance", [BOTH, (0,), (1,)])

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import clarabel
 import numpy as np
 from scipy import sparse
-from scipy.linalg import block_diag
 
 from momentum_lab.physics.contact import Contacts, ContactSolution, solve_contact
 from momentum_lab.physics.ground import Ground
 from momentum_lab.physics.push import apply_pushes
-from momentum_lab.physics.touch import sole_touches
+from momentum_lab.physics.touch import SolePoints
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
 from momentum_lab.session import Session
@@ -88,17 +87,10 @@ def problem_of(
     robot: RobotModel, dynamics: Dynamics, force: np.ndarray, friction: float, dt: float
 ) -> Problem:
     """The contact problem of a state under generalized forces (nv,) without contact."""
-    touches = sole_touches(robot, dynamics, Ground.level(2, friction))
-    contacts = Contacts(
-        frame_jacobian=np.concatenate([touch.frame_jacobian for touch in touches]),
-        spread=block_diag(*[touch.spread for touch in touches]),
-        gap=np.concatenate([touch.gap for touch in touches]),
-        friction=tuple(friction for touch in touches for _ in touch.gap),
-    )
-    feet = np.concatenate([np.full(touch.gap.size, touch.foot) for touch in touches])
-    corners = np.concatenate([touch.position for touch in touches])
+    touches = SolePoints(robot, Ground.level(2, friction)).touches(dynamics)
+    feet = np.repeat(touches.foot, 4)
     mass_matrix, impulse = with_joint_limits(robot, dynamics, dt * force, dt)
-    return Problem(dynamics, mass_matrix, impulse, contacts, feet, corners, dt)
+    return Problem(dynamics, mass_matrix, impulse, touches.contacts, feet, touches.position, dt)
 
 
 def with_joint_limits(
@@ -121,7 +113,7 @@ def with_joint_limits(
     )
 
 
-def least_contact_energy(delassus: np.ndarray, drift: np.ndarray, friction: tuple[float, ...]) -> np.ndarray:
+def least_contact_energy(delassus: np.ndarray, drift: np.ndarray, friction: np.ndarray) -> np.ndarray:
     """The impulses (n, 3) in the friction cones that minimise 1/2 l^T W l + g^T l, by an interior point method.
 
     While no point slides this convex program is the Signorini-Coulomb problem.

@@ -7,7 +7,7 @@ import pinocchio as pin
 
 from momentum_lab.physics.ground import Ground, Patch
 from momentum_lab.physics.simulator import Simulator
-from momentum_lab.physics.touch import BodyPoints, sole_touches
+from momentum_lab.physics.touch import BodyPoints, SolePoints, Touches
 from momentum_lab.robot.posture import standing_posture
 from momentum_lab.robot.state import State
 from tests.conftest import assert_close, random_rotation
@@ -33,27 +33,31 @@ def test_corners_of_soles_and_their_velocities(robot, rng):
     state = near_the_ground(robot, rng)
     rotation = random_rotation(rng)
     patch = Patch(0.7, np.array([0.0, 0.0, 0.5]), rotation)
-    touches = sole_touches(robot, robot.at(state), Ground((patch, patch), patch))
-    assert [touch.foot for touch in touches] == [0, 1]
-    for foot, touch in enumerate(touches):
+    touches = SolePoints(robot, Ground((patch, patch), patch)).touches(robot.at(state))
+    assert touches.foot.tolist() == [0, 1]
+    velocity = (touches.contacts.jacobian @ state.v).reshape(2, 4, 3)
+    for foot, moving in enumerate(velocity):
         position = corners_at(robot, state.q, foot)
         ahead = corners_at(robot, robot.integrate(state.q, EPS * state.v), foot)
         behind = corners_at(robot, robot.integrate(state.q, -EPS * state.v), foot)
-        assert_close(touch.position, position, 1e-12)
-        assert_close(touch.gap, [rotation[:, 2] @ (p - patch.origin) for p in position], 1e-12)
-        velocity = (touch.spread @ touch.frame_jacobian @ state.v).reshape(-1, 3)
-        assert_close(velocity, (ahead - behind) / (2 * EPS) @ rotation, 1e-6)
+        mine = slice(4 * foot, 4 * foot + 4)
+        assert_close(touches.position[mine], position, 1e-12)
+        height = [rotation[:, 2] @ (p - patch.origin) for p in position]
+        assert_close(touches.contacts.gap[mine], height, 1e-12)
+        assert_close(moving, (ahead - behind) / (2 * EPS) @ rotation, 1e-6)
+        assert_close(touches.contacts.friction[mine], np.full(4, 0.7), 0.0)
 
 
 def test_a_foot_in_the_air_touches_nothing(robot):
     q = standing_posture(robot, robot.foot_names[:1])
-    touches = sole_touches(robot, robot.at(State(q, np.zeros(robot.nv))), Ground.level(2, 0.7))
-    assert [touch.foot for touch in touches] == [0]
+    touches = SolePoints(robot, Ground.level(2, 0.7)).touches(robot.at(State(q, np.zeros(robot.nv))))
+    assert touches.foot.tolist() == [0]
+    assert len(touches.position) == 4
 
 
 def test_bodies_of_a_standing_robot_are_clear(robot):
     state = State(standing_posture(robot), np.zeros(robot.nv))
-    assert BodyPoints(robot, 1e-3).touches(state, Patch(0.7)) == []
+    assert BodyPoints(robot, 1e-3).touches(state, Patch(0.7)) is None
 
 
 def test_bodies_near_the_floor_are_found_where_they_are(robot, rng):
@@ -73,13 +77,15 @@ def test_bodies_near_the_floor_are_found_where_they_are(robot, rng):
         robot.integrate(state.q, -EPS * state.v)
     )
     touches = BodyPoints(robot, 1e-3).touches(state, floor)
-    assert {touch.foot for touch in touches} == {None}
-    assert_close(np.concatenate([touch.position for touch in touches]), position[near], 1e-12)
-    assert_close(np.concatenate([touch.gap for touch in touches]), position[near, 2] - 0.8, 1e-12)
-    velocity = np.concatenate([touch.spread @ touch.frame_jacobian @ state.v for touch in touches]).reshape(
-        -1, 3
-    )
+    assert set(touches.foot.tolist()) == {-1}
+    assert_close(touches.position, position[near], 1e-12)
+    assert_close(touches.contacts.gap, position[near, 2] - 0.8, 1e-12)
+    velocity = (touches.contacts.jacobian @ state.v).reshape(-1, 3)
     assert_close(velocity, difference[near] / (2 * EPS), 1e-6)
+
+
+def gaps_of(touches: Touches | None) -> list[float]:
+    return [] if touches is None else touches.contacts.gap.tolist()
 
 
 def test_looking_away_misses_no_touch(robot):
@@ -92,8 +98,8 @@ def test_looking_away_misses_no_touch(robot):
         followed = following.touches(state, floor)
         if tick > 300:
             fresh = BodyPoints(robot, 1e-3).touches(state, floor)
-            assert [touch.gap.tolist() for touch in followed] == [touch.gap.tolist() for touch in fresh]
-            seen += len(fresh)
+            assert gaps_of(followed) == gaps_of(fresh)
+            seen += len(gaps_of(fresh))
         damping = -8e-3 * robot.effort_limit * state.v[6:]
         state = simulator.step(robot.at(state), damping, (), 0.0).state
         following.follow(state)
