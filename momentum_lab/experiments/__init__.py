@@ -1,0 +1,1 @@
+"""Experiments: the chapter's figures and statements as runs whose claims are measured and can fail."""
