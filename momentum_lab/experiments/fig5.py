@@ -113,7 +113,7 @@ def draw(runs: Runs) -> Any:
     farthest = int(np.argmax(data["CMP y from the outer edge [m]"]))
     turned = int(np.argmin(data["pelvis roll [rad]"]))
     for place, tick in enumerate((0, farthest, turned)):
-        snapshot(axes[0, place], session, tick, FRONT, f"{clock[tick]:.2f} s, from the front, mirrored")
+        snapshot(axes[0, place], session, tick, FRONT, f"{clock[tick]:.2f} s, from the front")
     legend_below(picture, axes[0, 0])
     for name, color in (("CoM", COM), ("CoP", COP), ("CMP", CMP)):
         values = _MM * np.asarray(data[f"{name} y from the outer edge [m]"])

@@ -174,7 +174,7 @@ def draw(runs: Runs) -> Any:
     clock = times(session)
     most = int(np.abs(body_roll(session)).argmax())
     for place, tick in enumerate((0, most, len(clock) - 1)):
-        snapshot(axes[0, place], session, tick, FRONT, f"(A) {clock[tick]:.2f} s, from behind")
+        snapshot(axes[0, place], session, tick, FRONT, f"(A) {clock[tick]:.2f} s, from the front")
     legend_below(picture, axes[0, 0])
     data = table(runs)
     _positions(axes[1, 0], session, data)

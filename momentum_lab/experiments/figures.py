@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from momentum_lab.errors import InputError
-from momentum_lab.experiments import fig4, fig5, fig7, fig8, fig9, table1
+from momentum_lab.experiments import fig1, fig4, fig5, fig7, fig8, fig9, table1
 from momentum_lab.experiments.claims import Figure
 
 FIGURES: dict[str, Figure] = {
     figure.name: figure
-    for figure in (fig4.FIGURE, fig5.FIGURE, fig7.FIGURE, fig8.FIGURE, fig9.FIGURE, table1.FIGURE)
+    for figure in (
+        fig1.FIGURE,
+        fig4.FIGURE,
+        fig5.FIGURE,
+        fig7.FIGURE,
+        fig8.FIGURE,
+        fig9.FIGURE,
+        table1.FIGURE,
+    )
 }
 
 

@@ -57,7 +57,7 @@ def settled(session: Session) -> float:
 
 
 def claims(runs: Runs) -> list[Claim]:
-    """Every method stands; those that choose forces plan a CoP inside the soles, resolved momentum plans none."""
+    """Every method stands; those that choose forces plan a CoP inside the soles, one does not ask."""
     found = [stands(name, session) for name, session in runs.items()]
     for name, session in runs.items():
         found.append(at_most(f"{name}: the CoM comes to rest", settled(session), 0.03, "m/s"))
@@ -68,8 +68,8 @@ def claims(runs: Runs) -> list[Claim]:
         session = runs[name]
         lost = largest(rate_gap(session)[:, :3]) / (session.robot.mass * GRAVITY)
         found.append(at_most(f"{name}: linear momentum rate given up", lost, 0.05, "m g"))
-    asked = int(saturated(runs["resolved-momentum"]).sum())
-    found.append(at_most("resolved-momentum: ticks on which it reckons with a border", asked, 0, "ticks"))
+    bounded = int(saturated(runs["resolved-momentum"]).sum())
+    found.append(at_most("resolved-momentum: ticks on which it bounds its CoP", bounded, 0, "ticks"))
     force_first = min(_spin(runs[name]) for name in ("computed-torque", "whole-body-qp"))
     ratio = _spin(runs["resolved-momentum"]) / force_first
     found.append(at_least("it turns the body more than the method that turns it least", ratio, 1.0, "times"))
@@ -87,7 +87,7 @@ def table(runs: Runs) -> Columns:
         "method": [CONTROLLERS[name].title for name in runs],
         "result": [fate(session).partition(":")[0] for session in sessions],
         "CoM moved at most [mm]": [_MM * largest(com_moved(session)) for session in sessions],
-        "k_y at most [N m s]": [_spin(session) for session in sessions],
+        "|k_y| at most [N m s]": [_spin(session) for session in sessions],
         "planned CoP beyond toes [mm]": [_MM * planned_beyond(session) for session in sessions],
         "measured CoP beyond toes, 99 % [mm]": [_MM * measured_beyond(session) for session in sessions],
         "desired CoP outside [s]": [
