@@ -14,6 +14,8 @@ from momentum_lab.experiments.claims import Claim, Figure
 from momentum_lab.experiments.figures import figure_named
 from momentum_lab.experiments.play import Played, judged, play, report
 from momentum_lab.experiments.writing import paths, writable_folder, write
+from momentum_lab.robot.catalog import load_spec
+from momentum_lab.scenario import Scenario
 
 _CLAIM_FAILED = 1
 
@@ -31,6 +33,9 @@ def figure(args: Namespace) -> int:
     if args.out is None:
         raise InputError("--out", "nothing", "a folder for the three files")
     scenarios = chosen.scenarios(args.robot)
+    for scenario in scenarios.values():
+        # An unknown robot is told before a folder is made for it.
+        load_spec(scenario.robot)
     folder = writable_folder(Path(args.out), chosen.name)
     played = _played(chosen, scenarios)
     claims = judged(chosen, played)
@@ -42,7 +47,7 @@ def figure(args: Namespace) -> int:
     return 0 if all(claim.holds for claim in claims) else _CLAIM_FAILED
 
 
-def _played(chosen: Figure, scenarios: dict) -> Played:
+def _played(chosen: Figure, scenarios: dict[str, Scenario]) -> Played:
     with interruptible() as stopped, progress(chosen.name) as told:
 
         def proceed(fraction: float) -> bool:

@@ -177,9 +177,9 @@ def draw(runs: Runs) -> Any:
             worked, seen = scale * np.asarray(data[key]), scale * np.asarray(data[other])
             panel.plot(data["time [s]"], seen, color=color, lw=3.0, alpha=0.4, label=_said(other))
             panel.plot(data["time [s]"], worked, ":", color=INK, lw=1.2)
-            panel.plot([], [], ":", color=INK, lw=1.2, label="computed along the arrow")
             numbers.append(f"{name} = {worked[tick]:.1f} {unit}, against {seen[tick]:.1f} {unit}")
             curves.append(seen)
+        panel.plot([], [], ":", color=INK, lw=1.2, label="computed along the arrow")
         _frame(panel, curves)
         band(panel, session)
         panel.set_xlim(0.0, 1.0)
@@ -202,7 +202,7 @@ def _said(key: str) -> str:
 def _frame(axes: Any, curves: list[np.ndarray]) -> None:
     """Room for curves and, below them, for the numbers; spikes of a tick run out of the picture."""
     low, high = np.percentile(np.concatenate(curves), [0.3, 99.7])
-    axes.set_ylim(low - 0.55 * (high - low), high + 0.15 * (high - low))
+    axes.set_ylim(low - 0.55 * (high - low), high + 0.4 * (high - low))
 
 
 FIGURE = Figure("fig1", "Forces and momentum rates, both ways", scenarios, draw, table, claims)

@@ -9,7 +9,7 @@ import numpy as np
 from momentum_lab.experiments.canvas import CMP, COP, INK, band, canvas, finish, heading, legend_below
 from momentum_lab.experiments.choice import chosen
 from momentum_lab.experiments.claims import Claim, Columns, Figure, Runs, at_least, at_most, largest, stands
-from momentum_lab.experiments.measured import ground_force, momentum_slope, push_end, times
+from momentum_lab.experiments.measured import ground_force, momentum_slope, push_end, push_start, times
 from momentum_lab.experiments.sticks import SIDE, snapshot
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
@@ -43,7 +43,7 @@ def claims(runs: Runs) -> list[Claim]:
     """Both points coincide exactly when the ground does not turn the body, and else differ by dk / f_z."""
     session = runs["push"]
     clock, apart = times(session), gap(session)
-    before, after = clock < session.pushes[0].start, clock[:-1] > push_end(session)
+    before, after = clock < push_start(session), clock[:-1] > push_end(session)
     difference = np.abs(apart[:-1] - lever(session))[after]
     _, farthest = moments(session)
     front = session.recording.column("sole_pose")[farthest, :, 0].mean() + session.robot.soles[0].upper[0]

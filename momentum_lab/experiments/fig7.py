@@ -19,7 +19,7 @@ from momentum_lab.experiments.claims import (
     largest,
     stands,
 )
-from momentum_lab.experiments.measured import com_moved, rate_gap, saturated, times, upright
+from momentum_lab.experiments.measured import com_moved, push_start, rate_gap, saturated, times, upright
 from momentum_lab.experiments.sticks import SIDE, snapshot
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.scenario import Scenario, changed
@@ -47,7 +47,7 @@ def claims(runs: Runs) -> list[Claim]:
     linear, angular = runs[LINEAR], runs[ANGULAR]
     weight = linear.robot.mass * GRAVITY
     kept, paid = rate_gap(linear), rate_gap(angular)[_still_there(angular)]
-    first = saturated(linear).argmax()
+    first = min(saturated(linear).argmax(), len(angular.recording))
     q = [run.recording.column("q")[:first] for run in (linear, angular)]
     return [
         at_least(
@@ -109,8 +109,8 @@ def draw(runs: Runs) -> Any:
     picture, axes = canvas(title, 2, 3, (14.0, 8.5), width_ratios=[1.0, 1.0, 1.3])
     for place, (label, run) in enumerate(runs.items()):
         kept = ("linear", "angular")[place]
-        _robot(axes[0, place], run, session.pushes[0].start + 0.1, f"{label}: keep {kept} momentum")
-        _robot(axes[1, place], run, session.pushes[0].start + _LATER, label)
+        _robot(axes[0, place], run, push_start(session) + 0.1, f"{label}: keep {kept} momentum")
+        _robot(axes[1, place], run, push_start(session) + _LATER, label)
     legend_below(picture, axes[0, 0])
     _over_time(axes[0, 2], runs, "CoM forward of its start", "x [mm]", lambda run: _MM * com_moved(run)[:, 0])
     _over_time(

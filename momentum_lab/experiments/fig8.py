@@ -26,6 +26,7 @@ from momentum_lab.experiments.measured import (
     foot_cops,
     ground_force,
     push_end,
+    push_start,
     rate_gap,
     saturated,
     times,
@@ -52,7 +53,7 @@ def claims(runs: Runs) -> list[Claim]:
     session = runs["push"]
     clock, outside, gap = times(session), saturated(session), rate_gap(session)
     weight = session.robot.mass * GRAVITY
-    quiet = (clock < session.pushes[0].start) | (clock > session.scenario.seconds - 0.5)
+    quiet = (clock < push_start(session)) | (clock > session.scenario.seconds - 0.5)
     linear = largest(gap[:, :3]) / weight
     granted = foot_cops(session, "foot_wrench_admissible")[:, :, _X]
     difference = np.abs(granted - session.recording.column("foot_cop_measured")[:, :, _X])
@@ -86,7 +87,7 @@ def claims(runs: Runs) -> list[Claim]:
 
 def _first(clock: np.ndarray, outside: np.ndarray, session: Session) -> float:
     """When the desired CoP first leaves, after the start of the push, s."""
-    return float(clock[outside][0] - session.pushes[0].start) if outside.any() else float("nan")
+    return float(clock[outside][0] - push_start(session)) if outside.any() else float("nan")
 
 
 def _given_way(gap: np.ndarray) -> float:

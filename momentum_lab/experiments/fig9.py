@@ -140,7 +140,8 @@ def _run_length(flags: np.ndarray, session: Session) -> float:
 
 def _last_above(clock: np.ndarray, values: np.ndarray, part: float) -> float:
     """When a quantity is above a part of its largest value for the last time, s."""
-    return float(clock[np.flatnonzero(values >= part * values.max())[-1]])
+    above = np.flatnonzero(values >= part * values.max())
+    return float(clock[above[-1]]) if above.size else float("nan")
 
 
 def _then(clock: np.ndarray, missing: np.ndarray, roll: np.ndarray) -> float:

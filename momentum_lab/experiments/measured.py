@@ -16,6 +16,11 @@ def times(session: Session) -> np.ndarray:
     return session.recording.column("time")
 
 
+def push_start(session: Session) -> float:
+    """When the first push begins, s; 0 without a push."""
+    return min((push.start for push in session.pushes), default=0.0)
+
+
 def push_end(session: Session) -> float:
     """When the last push is over, s; 0 without a push."""
     return max((push.start + push.duration for push in session.pushes), default=0.0)

@@ -43,15 +43,19 @@ def play(scenarios: dict[str, Scenario], proceed: Callable[[float], bool]) -> Pl
     runs: dict[str, Session] = {}
     broken: dict[str, str] = {}
     for label, scenario in scenarios.items():
-        done = len(runs)
         session = Session(scenario)
-        timing = run_headless(session, lambda part, done=done: proceed((done + part) / len(scenarios)))
+        timing = run_headless(session, _part_of(len(runs), len(scenarios), proceed))
         if not len(session.recording):
             raise SimulationError(timing.error or f"the run {label} was stopped before its first tick")
         runs[label] = session
         if timing.error is not None:
             broken[label] = timing.error
     return Played(runs, broken)
+
+
+def _part_of(done: int, count: int, proceed: Callable[[float], bool]) -> Callable[[float], bool]:
+    """What one run asks, told as a fraction of all runs."""
+    return lambda fraction: proceed((done + fraction) / count)
 
 
 def judged(figure: Figure, played: Played) -> list[Claim]:
