@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from momentum_lab.errors import InputError
-from momentum_lab.experiments import fig1, fig4, fig5, fig7, fig8, fig9, table1
+from momentum_lab.experiments import fig1, fig4, fig5, fig7, fig8, fig9, flight, table1
 from momentum_lab.experiments.claims import Figure
 
 FIGURES: dict[str, Figure] = {
@@ -15,6 +15,7 @@ FIGURES: dict[str, Figure] = {
         fig7.FIGURE,
         fig8.FIGURE,
         fig9.FIGURE,
+        flight.FIGURE,
         table1.FIGURE,
     )
 }

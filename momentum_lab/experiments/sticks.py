@@ -43,8 +43,20 @@ def draw_robot(axes: Any, session: Session, tick: int, view: int) -> None:
         axes.plot(
             corners[[0, 1, 2, 3, 0], view], corners[[0, 1, 2, 3, 0], 2], color=INK, lw=3.5, label="sole"
         )
+    _draw_ground(axes, session, tick, view)
+    com = column("com")[tick]
+    axes.plot(com[view], com[2], "o", color=COM, ms=9, mec=INK, label="CoM")
+    axes.set_aspect("equal")
+
+
+def _draw_ground(axes: Any, session: Session, tick: int, view: int) -> None:
+    """What the ground does to the robot; in the air there is no CoP and no CMP."""
+    column = session.recording.column
+    axes.axhline(0.0, color="#cccccc", lw=1.0, zorder=0)
     com, cop, cmp = column("com")[tick], column("cop_measured")[tick, view], column("cmp")[tick, view]
     force = column("foot_wrench_measured")[tick, :, :3].sum(axis=0)
+    if not np.isfinite(cop):
+        return
     arrow = _NEWTONS_PER_WEIGHT_LENGTH * com[2] * force / (session.robot.mass * GRAVITY)
     axes.annotate(
         "",
@@ -56,11 +68,8 @@ def draw_robot(axes: Any, session: Session, tick: int, view: int) -> None:
     axes.plot(
         [cmp, com[view]], [0.0, com[2]], "--", color=CMP, lw=1.0, label="parallel to it, through the CoM"
     )
-    axes.plot(com[view], com[2], "o", color=COM, ms=9, mec=INK, label="CoM")
     axes.plot(cop, 0.0, "D", color=COP, ms=8, mec="white", label="CoP")
     axes.plot(cmp, 0.0, "^", color=CMP, ms=8, mec="white", label="CMP")
-    axes.axhline(0.0, color="#cccccc", lw=1.0, zorder=0)
-    axes.set_aspect("equal")
 
 
 def snapshot(axes: Any, session: Session, tick: int, view: int, title: str) -> None:
@@ -68,6 +77,7 @@ def snapshot(axes: Any, session: Session, tick: int, view: int, title: str) -> N
     draw_robot(axes, session, tick, view)
     label(axes, title, f"{'xy'[view]} [m]", "z [m]")
     start = session.recording.column("com")[0]
-    height = 1.9 * float(start[2])
+    lowest = float(session.recording.column("sole_pose")[0, :, 2].min())
+    height = lowest + 1.9 * (float(start[2]) - lowest)
     axes.set_xlim(start[view] - 0.48 * height, start[view] + 0.48 * height)
     axes.set_ylim(-0.05 * height, height)
