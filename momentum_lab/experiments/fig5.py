@@ -115,6 +115,8 @@ def draw(runs: Runs) -> Any:
     for place, tick in enumerate((0, farthest, turned)):
         snapshot(axes[0, place], session, tick, FRONT, f"{clock[tick]:.2f} s, from the front")
     legend_below(picture, axes[0, 0])
+    for panel in axes[1]:
+        band(panel, session)
     for name, color in (("CoM", COM), ("CoP", COP), ("CMP", CMP)):
         values = _MM * np.asarray(data[f"{name} y from the outer edge [m]"])
         axes[1, 0].plot(clock, values, color=color, label=name)
@@ -129,8 +131,6 @@ def draw(runs: Runs) -> Any:
     away = 1e2 * np.asarray(data["swing foot y [m]"])
     axes[1, 2].plot(clock, away, "--", color=INK, label="swing foot to the left [cm]")
     finish(axes[1, 2], "what rotates", "time [s]", "[deg], [cm]")
-    for panel in axes[1]:
-        band(panel, session)
     return picture
 
 

@@ -143,7 +143,7 @@ def _written(axes: Any, columns: Columns) -> None:
 def _cell(value: Any) -> str:
     if isinstance(value, str):
         return value
-    return "-" if not np.isfinite(value) else f"{value:.2f}"
+    return "-" if not np.isfinite(value) else f"{round(value, 2) + 0.0:.2f}"
 
 
 FIGURE = Figure("table1", "All methods on the same push", scenarios, draw, table, claims)
