@@ -7,6 +7,7 @@ from momentum_lab.experiments import fig1
 from momentum_lab.experiments.claims import Runs
 from momentum_lab.experiments.measured import ground_force, momentum_slope
 from momentum_lab.experiments.play import play
+from momentum_lab.scenario import changed
 from tests.experiments.played import always, any_starts, claims, failing, played
 
 
@@ -49,3 +50,12 @@ def test_both_ways_are_inverse_to_each_other() -> None:
     push, com = column("push_wrench")[:-1], column("com")[:-1]
     moment += push[:, 3:] - np.cross(com, push[:, :3])
     assert abs(moment - slope[:, 3:]).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", ["talos", "g1"])
+def test_what_is_left_between_both_ways_halves_with_the_tick(name: str) -> None:
+    """So it is the difference quotient's, and not a force that was forgotten."""
+    push = fig1.scenarios(name)["push"]
+    finer = fig1.claims(play({"push": changed(push, timestep=0.5 * push.timestep)}, always).runs)
+    for coarse, fine in list(zip(claims("fig1", name), finer, strict=True))[1:6]:
+        assert fine.measured == pytest.approx(0.5 * coarse.measured, rel=0.1)
