@@ -19,6 +19,7 @@ MAX_SECONDS = 3600.0
 MAX_SEED = 2**32 - 1
 MAX_DISTANCE = 1000.0
 MAX_LEAN = 0.1
+MAX_DROP = 2.0
 ENGINES = ("pinocchio",)
 
 _WORDS = {
@@ -44,6 +45,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         stance: the feet the robot stands on; empty: all of them.
         com_outside: how far outside the outer edge of its only stance foot the CoM starts, m; None: the robot
             starts where it is to stand.
+        drop_height: how far above the ground the soles start, m.
         priority: 0 keeps linear momentum, 1 keeps angular momentum.
         gains: values that differ from the controller's defaults.
         pushes: the pushes, in simulated time.
@@ -62,6 +64,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     controller: str = "computed-torque"
     stance: tuple[str, ...] = ()
     com_outside: Annotated[float, msgspec.Meta(ge=-MAX_LEAN, le=MAX_LEAN)] | None = None
+    drop_height: Annotated[float, msgspec.Meta(ge=0.0, le=MAX_DROP)] = 0.0
     priority: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.0
     gains: dict[str, float] = {}
     pushes: tuple[Push, ...] = ()

@@ -89,7 +89,9 @@ class Session:
         self.scenario = scenario
         self.robot = robot or RobotModel.named(scenario.robot)
         self.stance = _stance(self.robot, scenario.stance)
-        self._start = _starting_state(self.robot, scenario, scenario.com_outside)
+        self._start = _lifted(
+            _starting_state(self.robot, scenario, scenario.com_outside), scenario.drop_height
+        )
         home = self.robot.at(_starting_state(self.robot, scenario, None))
         self._standing_height = float(home.com_in_world[2])
         self._goal = StandingGoal(self.robot, home, self.stance)
@@ -288,3 +290,10 @@ def _starting_state(robot: RobotModel, scenario: Scenario, com_outside: float | 
     q[:2] += scenario.position
     q[3:7] = pin.Quaternion(rotation).normalized().coeffs()
     return State(q, np.zeros(robot.nv))
+
+
+def _lifted(state: State, height: float) -> State:
+    """The same state with everything `height` (m) higher."""
+    q = state.q.copy()
+    q[2] += height
+    return State(q, state.v)

@@ -49,6 +49,7 @@ PLACES = {
     "daqp": ("control.qp",),
     "clarabel": ("control.qp",),
     "placo": ("robot.posture", "control.placo_body", "control.placo_tasks", "bench.peer"),
+    "matplotlib": ("experiments",),
     "mujoco": ("physics.mujoco_model", "bench"),
 }
 

@@ -119,7 +119,7 @@ BAD_VALUES = [
     ("list", "list: got nothing; allowed: robots, controllers, scenarios, lessons, gains"),
     ("list cats", "list: got cats; allowed: robots, controllers, scenarios, lessons, gains"),
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
-    ("fly", "command: got fly; allowed: app, run, list, equations, bench"),
+    ("fly", "command: got fly; allowed: app, run, figure, list, equations, bench"),
 ]
 
 
@@ -131,11 +131,11 @@ def test_bad_value_is_one_line_that_names_it(words: str, message: str, capsys: O
 @pytest.mark.parametrize(
     ("words", "start"),
     [
-        ("run", "scenario: got nothing; allowed: one of one-leg, outside-the-foot, push-backward, "),
-        ("run nope", "scenario: got nope; allowed: one of one-leg, outside-the-foot, push-backward, "),
+        ("run", "scenario: got nothing; allowed: one of fig1, fig4, fig5, "),
+        ("run nope", "scenario: got nope; allowed: one of fig1, fig4, fig5, "),
         (
             "app --scenario nope",
-            "--scenario: got nope; allowed: one of one-leg, outside-the-foot, push-backward, ",
+            "--scenario: got nope; allowed: one of fig1, fig4, fig5, ",
         ),
         ("app --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
         ("equations --robot nope", "--robot: got nope; allowed: one of g1, icub, "),

@@ -1,8 +1,8 @@
-"""The command line: momentum-lab app | run | list | equations | bench.
+"""The command line: momentum-lab app | run | figure | list | equations | bench.
 
 Exit codes: 0 the command did what was asked (a robot that falls is a result, not an error), 1 something broke
-down on the way or an equation does not hold, 2 bad input, 130 stopped by Ctrl+C. Bad input is one line on
-stderr and nothing on stdout: `momentum-lab: ARGUMENT: got GIVEN; allowed: ALLOWED`.
+down on the way or a figure's claim or an equation does not hold, 2 bad input, 130 stopped by Ctrl+C. Bad
+input is one line on stderr and nothing on stdout: `momentum-lab: ARGUMENT: got GIVEN; allowed: ALLOWED`.
 """
 
 from __future__ import annotations
@@ -69,6 +69,10 @@ def _imported(name: str) -> Callable[[Namespace], int]:
         from momentum_lab.cli.run import run
 
         return run
+    if name == "figure":
+        from momentum_lab.cli.figure import figure
+
+        return figure
     if name == "list":
         from momentum_lab.cli.listing import list_things
 

@@ -13,7 +13,7 @@ from momentum_lab.errors import InputError
 from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
 from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 
-COMMANDS = ("app", "run", "list", "equations", "bench")
+COMMANDS = ("app", "run", "figure", "list", "equations", "bench")
 KINDS = ("robots", "controllers", "scenarios", "lessons", "gains")
 _MAX_PORT = 65535
 _MAX_BENCH_SECONDS, _MAX_BENCH_MINUTES = 600.0, 60.0
@@ -127,6 +127,11 @@ def _parser() -> _Parser:
     for name, help, add in (
         ("app", "open the lab in the browser", _app_arguments),
         ("run", "run a scenario without a screen", _run_arguments),
+        (
+            "figure",
+            "one of the chapter's figures: picture, numbers, and claims that are checked",
+            _figure_arguments,
+        ),
         ("list", "what there is: robots, controllers, scenarios, lessons, gains", _list_arguments),
         ("equations", "how exactly the chapter's equations hold on a robot", _equations_arguments),
         ("bench", "how fast the lab is on this machine", _bench_arguments),
@@ -138,7 +143,7 @@ def _parser() -> _Parser:
 
 
 def _usage(command: str) -> str:
-    words = {"run": "run SCENARIO", "list": f"list {'|'.join(KINDS)}"}
+    words = {"run": "run SCENARIO", "figure": "figure NAME --out DIR", "list": f"list {'|'.join(KINDS)}"}
     return words.get(command, command)
 
 
@@ -218,6 +223,12 @@ def _push_arguments(parser: _Parser) -> None:
 def _choice_arguments(parser: _Parser) -> None:
     parser.add_argument("--robot", metavar="R", help="a name, or a robot's .toml file")
     parser.add_argument("--controller", metavar="C", help="who keeps the balance")
+
+
+def _figure_arguments(parser: _Parser) -> None:
+    parser.add_argument("name", nargs="?", default="", metavar="NAME", help="which figure, such as fig8")
+    parser.add_argument("--robot", metavar="R", help="a name, or a robot's .toml file")
+    parser.add_argument("--out", metavar="DIR", help="folder for NAME.png, NAME.csv and NAME.json")
 
 
 def _list_arguments(parser: _Parser) -> None:

@@ -1,1 +1,1 @@
-"""What the lab says about itself: the chapter's equations, measured."""
+"""The chapter as experiments: its figures as runs whose claims can fail, its equations measured."""

@@ -1,0 +1,82 @@
+"""How all figures look: colours of the lab's marks, axes with units, the push as a grey band."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure as Picture
+
+from momentum_lab.session import Session
+
+# The Okabe-Ito palette, each colour for the quantity that has it on the app's screen.
+COM, COP, GRANTED, CMP = "#e69f00", "#0072b2", "#56b4e9", "#d55e00"
+FORCE, SPIN, CHANGED = "#009e73", "#cc79a7", "#d55e00"
+MUTED, INK = "#6e6e6e", "#000000"
+
+
+def canvas(title: str, rows: int, columns: int, size: tuple[float, float], **options: Any) -> tuple[Any, Any]:
+    """An empty picture (inches) without a window, and its axes (rows, columns)."""
+    picture = Picture(figsize=size, layout="constrained")
+    FigureCanvasAgg(picture)
+    picture.suptitle(title, fontsize=13)
+    return picture, picture.subplots(rows, columns, squeeze=False, **options)
+
+
+def band(axes: Any, session: Session) -> None:
+    """Every push of a run as a grey band over time."""
+    for push in session.pushes:
+        axes.axvspan(push.start, push.start + push.duration, color="#dddddd", zorder=0, label="push")
+
+
+def finish(axes: Any, title: str, x: str, y: str, **legend: Any) -> None:
+    """Title, units, a light grid and a legend that names everything once."""
+    label(axes, title, x, y)
+    handles, labels = axes.get_legend_handles_labels()
+    named = dict(zip(labels, handles, strict=True))
+    if named:
+        settings = {"fontsize": 8, "framealpha": 0.9, **legend}
+        axes.legend(named.values(), named.keys(), **settings)
+
+
+def label(axes: Any, title: str, x: str, y: str) -> None:
+    """Title, units and a light grid."""
+    axes.set_title(title, fontsize=10, loc="left")
+    axes.set_xlabel(x, fontsize=9)
+    axes.set_ylabel(y, fontsize=9)
+    axes.tick_params(labelsize=8)
+    axes.grid(color="#eeeeee", zorder=0)
+
+
+def legend_below(picture: Any, axes: Any) -> None:
+    """What one axes shows, named once below the whole picture."""
+    handles, labels = axes.get_legend_handles_labels()
+    named = dict(zip(labels, handles, strict=True))
+    picture.legend(named.values(), named.keys(), loc="outside lower center", ncols=len(named), fontsize=9)
+
+
+def heading(title: str, session: Session) -> str:
+    """The title of a picture with the robot and the push it got."""
+    pushes = "; ".join(f"{push.force:.0f} N for {push.duration:g} s" for push in session.pushes)
+    return f"{title}\n{session.robot.spec.title}, {pushes or 'no push'}"
+
+
+def cut_spikes(axes: Any) -> None:
+    """Let spikes of a few ticks run out of the picture where they would flatten everything else, and say so."""
+    values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.get_lines()])
+    low, high = np.nanpercentile(values, [0.1, 99.9])
+    room = 0.15 * (high - low)
+    highest, lowest = np.nanmax(values), np.nanmin(values)
+    if highest <= high + room and lowest >= low - room:
+        return
+    axes.set_ylim(low - room, high + room)
+    axes.text(
+        0.99,
+        0.03,
+        f"a sole lands: spikes from {lowest:.0f} to {highest:.0f} are cut",
+        transform=axes.transAxes,
+        fontsize=7,
+        color=MUTED,
+        ha="right",
+    )
