@@ -21,7 +21,7 @@ import numba
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 
 _PACKAGE = Path(__file__).parent
-_MARK = b"import compiled\n"
+_MARK = b"import compiled"
 # Compiled code of other versions is thrown away when it is older than this, s.
 _KEPT = 30 * 24 * 3600.0
 
@@ -56,18 +56,23 @@ def _sources() -> dict[str, bytes]:
 
 def _use_cache() -> bool:
     """Point numba to a folder that keeps compiled code between runs; whether there is one."""
-    if not numba.config.CACHE_DIR:
-        home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "momentum-lab"
-        numba.config.CACHE_DIR = str(home / version_of(_sources()))
-    folder = Path(numba.config.CACHE_DIR)
     try:
+        if not numba.config.CACHE_DIR:
+            numba.config.CACHE_DIR = str(_own_folder())
+        folder = Path(numba.config.CACHE_DIR)
         if not folder.exists():
             folder.mkdir(parents=True, exist_ok=True)
             _announce()
-            _forget_old_versions(folder)
-    except OSError:
+    except (OSError, RuntimeError):  # no place to write, or no home at all
         return False
     return os.access(folder, os.W_OK)
+
+
+def _own_folder() -> Path:
+    """The folder of this version, among those of others, the oldest of which go."""
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "momentum-lab"
+    _forget_old_versions(home)
+    return home / version_of(_sources())
 
 
 def _announce() -> None:
@@ -76,10 +81,11 @@ def _announce() -> None:
         print("momentum-lab compiles its numerical loops: once, for about half a minute", file=sys.stderr)
 
 
-def _forget_old_versions(folder: Path) -> None:
-    for other in folder.parent.iterdir():
-        if other.is_dir() and time.time() - other.stat().st_mtime > _KEPT:
-            shutil.rmtree(other, ignore_errors=True)
+def _forget_old_versions(home: Path) -> None:
+    """Remove folders that have the name of a version and are old; nothing else is ours."""
+    for folder in home.glob("[0-9a-f]" * 16):
+        if time.time() - folder.stat().st_mtime > _KEPT:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 _CACHED = _use_cache()

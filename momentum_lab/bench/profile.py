@@ -9,10 +9,12 @@ from time import perf_counter
 from types import FrameType
 from typing import Any
 
-from numba.core.serialize import _numba_unpickle  # every array a compiled function returns passes through it
+from numba.core import serialize
 
 from momentum_lab.session import Session
 
+# Every array that a compiled function returns passes through this function of numba's; it is not counted.
+_INSIDE_NUMBA = getattr(getattr(serialize, "_numba_unpickle", None), "__code__", None)
 _WARM_UP, _COUNTED, _PROFILED = 20, 50, 300
 
 
@@ -65,7 +67,7 @@ def calls_per_tick(session: Session) -> float:
 
     def watch(frame: FrameType, event: str, what: Any) -> None:
         nonlocal count
-        inside = what is sys.setprofile or frame.f_code is _numba_unpickle.__code__
+        inside = what is sys.setprofile or frame.f_code is _INSIDE_NUMBA
         count += event in ("call", "c_call") and not inside
 
     _watched(session, _COUNTED, watch)
@@ -89,7 +91,7 @@ def profile(session: Session, least: float = 1.0) -> list[ProfileRow]:
     starts = [0.0]
 
     def watch(frame: FrameType, event: str, what: Any) -> None:
-        if what is sys.setprofile or frame.f_code is _numba_unpickle.__code__:
+        if what is sys.setprofile or frame.f_code is _INSIDE_NUMBA:
             return
         if event in ("call", "c_call"):
             name = _name(frame) if event == "call" else _builtin_name(what)

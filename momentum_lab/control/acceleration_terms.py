@@ -12,6 +12,9 @@ from momentum_lab.robot.rotation import rotation_error
 
 _MATRIX, _VECTOR = "f8[:, ::1]", "f8[::1]"
 
+BEFORE_THE_STOP = 0.03
+"""Joints are to turn back this far before their mechanical stops, rad."""
+
 
 @compiled(f"UniTuple({_VECTOR}, 2)({_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, f8, f8, f8, f8)")
 def posture(

@@ -7,10 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from momentum_lab.control.acceleration_terms import (
-    acceleration_program,
-    standing_feet,
-)
+from momentum_lab.control.acceleration_terms import BEFORE_THE_STOP, acceleration_program, standing_feet
 from momentum_lab.control.controller import Reference
 from momentum_lab.control.foot_forces import FootForces
 from momentum_lab.control.qp import QuadraticProgram, solve
@@ -19,8 +16,6 @@ from momentum_lab.robot.state import Dynamics
 
 # Keeps the program strictly convex where neither momentum nor posture decides.
 _RIDGE = 1e-6
-# Joints are to turn back this far before their mechanical stops, rad.
-_BEFORE_THE_STOP = 0.03
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +116,7 @@ class AccelerationProgram:
             weights.damping,
             weights.contact_rate,
             weights.joint_limit_rate,
-            _BEFORE_THE_STOP,
+            BEFORE_THE_STOP,
         )
         return solve(QuadraticProgram(*program, self._labels, self._soft)).x
 

@@ -122,6 +122,7 @@ class Footing:
     def __init__(self, robot: RobotModel) -> None:
         self.mass = robot.mass
         self.soles = robot.soles
+        self._every_foot = tuple(range(len(robot.soles)))
         self.ankles = np.array(
             [robot.model.frames[sole.frame].placement.inverse().translation for sole in robot.soles]
         )
@@ -213,7 +214,7 @@ class Footing:
 
     def _of_all(self, feet: StanceFeet, carried: np.ndarray, rate: np.ndarray) -> FootForces:
         """With zero wrenches for the feet that do not carry."""
-        if len(feet.index) == len(self.soles):
+        if feet.index == self._every_foot:
             return FootForces(carried, rate)
         wrench = np.zeros((len(self.soles), 6))
         wrench[list(feet.index)] = carried

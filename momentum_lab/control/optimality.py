@@ -93,29 +93,31 @@ def residuals(
             for j in range(size):
                 value += matrix[i - size, j] * x[j]
         above, below, pressure = value - upper[i], lower[i] - value, multipliers[i]
+        if math.isnan(above) or math.isnan(below):
+            return np.nan, np.nan, np.nan
         inequality = lower[i] < upper[i]
         if pressure != 0.0 and inequality:
             gap += abs(pressure) * max(-above if pressure > 0.0 else -below, 0.0)
         if not (pressure != 0.0 and inequality and soft.size > 0 and soft[i]):
-            worst = max(above, below)
-            if not worst <= violation:
-                violation = worst
+            violation = max(violation, above, below)
     force = multipliers[:size].copy()
     for i in range(matrix.shape[0]):
         if multipliers[size + i] != 0.0:
             for j in range(size):
                 force[j] += multipliers[size + i] * matrix[i, j]
-    stationarity = curved = steep = far = 0.0
+    stationarity = largest = far = 0.0
     for i in range(size):
         curvature = 0.0
         for j in range(size):
             curvature += hessian[i, j] * x[j]
-        stationarity += (curvature + gradient[i] + force[i]) ** 2
-        curved += curvature**2
-        steep += gradient[i] ** 2
-        far += x[i] ** 2
-    scale = 1.0 + math.sqrt(max(curved, steep))
-    return violation, math.sqrt(stationarity) / scale, gap / (scale * (1.0 + math.sqrt(far)))
+        left = abs(curvature + gradient[i] + force[i])
+        if math.isnan(left):
+            return left, left, left
+        stationarity = max(stationarity, left)
+        largest = max(largest, abs(curvature), abs(gradient[i]))
+        far = max(far, abs(x[i]))
+    scale = 1.0 + largest
+    return violation, stationarity / scale, gap / (scale * (1.0 + far))
 
 
 @compiled(

@@ -73,7 +73,7 @@ class Certificate:
 
     Attributes:
         primal: largest violation of a bound, in its unit; a soft bound that presses back does not count.
-        dual: length of P x + c + multipliers, relative to the longer of P x and c.
+        dual: largest entry of P x + c + multipliers, relative to the largest of its terms.
         gap: sum of multipliers times the distance to the bounds they press from, relative likewise.
     """
 

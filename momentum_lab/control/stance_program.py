@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from momentum_lab.control.acceleration_terms import BEFORE_THE_STOP, braking_bounds
 from momentum_lab.control.qp import QuadraticProgram
 from momentum_lab.control.stance_motion import Affine, StanceMotion
 from momentum_lab.control.wrench_cone import ROWS, wrench_cone
@@ -14,9 +15,6 @@ from momentum_lab.momentum.support import inset_rectangle
 from momentum_lab.momentum.wrench import skew
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
-
-# Joints are to turn back this far before their mechanical stops, rad.
-_BEFORE_THE_STOP = 0.03
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,10 +139,14 @@ class StanceProgram:
 
 def joint_bounds(robot: RobotModel, dynamics: Dynamics, rate: float) -> tuple[np.ndarray, np.ndarray]:
     """Accelerations (na,), rad/s^2, between which joints brake critically damped before their limits."""
-    angle, braking = dynamics.state.q[7:], -2.0 * rate * dynamics.state.v[6:]
-    low = rate**2 * (robot.position_lower + _BEFORE_THE_STOP - angle) + braking
-    high = rate**2 * (robot.position_upper - _BEFORE_THE_STOP - angle) + braking
-    return low, high
+    return braking_bounds(
+        dynamics.state.q[7:],
+        dynamics.state.v[6:],
+        robot.position_lower,
+        robot.position_upper,
+        rate,
+        BEFORE_THE_STOP,
+    )
 
 
 def _labels(

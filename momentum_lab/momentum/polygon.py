@@ -82,6 +82,8 @@ def convex_hull(points: np.ndarray) -> np.ndarray:
 def depth(point: np.ndarray, polygon: np.ndarray) -> float:
     """Distance from the nearest edge line, m, negative beyond one; minus infinity without an inside."""
     count = len(polygon)
+    if point.size != 2:
+        raise ValueError("a point of the plane has two coordinates")
     if count < 3:
         return -math.inf
     least = math.inf

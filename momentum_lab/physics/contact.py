@@ -211,7 +211,8 @@ def sticking_impulse(
         friction: Coulomb coefficient of each point (n,).
 
     Returns:
-        lambda (3 n,), N s, and the largest entry of S (C w + d) + c, m/s; NaN if lambda does not do.
+        lambda (3 n,), N s, and the largest entry of S (C S^T lambda + d) + c, m/s; NaN if lambda does not do.
+        Where G is singular, as for one or two points, it is the residual that says so.
     """
     rows, frames = spread.shape
     columns = np.ascontiguousarray(spread.T)
@@ -222,12 +223,12 @@ def sticking_impulse(
         for point in range(rows // 3):
             mean[j] += columns[j, 3 * point + 2] * closing[point]
     frame_impulse = solved(factor, -drift - solved(square, mean))
-    left = coupling @ frame_impulse + drift
     impulse = spread @ solved(square, frame_impulse)
+    left = coupling @ (impulse @ spread) + drift
     residual = 0.0
     for point in range(rows // 3):
         x, y, normal = impulse[3 * point : 3 * point + 3]
-        if not math.hypot(x, y) <= friction[point] * normal:
+        if not (normal >= 0.0 and math.hypot(x, y) <= friction[point] * normal):
             return impulse, np.nan
         for axis in range(3):
             speed = closing[point] if axis == 2 else 0.0

@@ -136,6 +136,8 @@ def driven(
         effort_limit: tau_max (na,), N m.
         nonlinear_effects: C v + tau_g (nv,), N and N m.
     """
+    if torque.size != effort_limit.size:
+        raise ValueError("a controller has to answer with one torque per joint")
     given, force = torque.copy(), -nonlinear_effects
     for joint in range(torque.size):
         limit = effort_limit[joint]

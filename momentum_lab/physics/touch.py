@@ -201,10 +201,10 @@ class BodyPoints:
         return points @ placement.rotation.T + placement.translation
 
     def _touch(self, joint: int, position: np.ndarray, gap: np.ndarray, floor: Patch) -> Touches:
-        jacobian = pin.getJointJacobian(
-            self._model, self._data, joint, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+        jacobian = np.ascontiguousarray(
+            pin.getJointJacobian(self._model, self._data, joint, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
         )
         origin = self._data.oMi[joint].translation.copy()
-        spread = spread_of(position, origin, floor.rotation)
+        spread = spread_of(position, origin, np.ascontiguousarray(floor.rotation))
         contacts = Contacts(jacobian, spread, gap, np.full(gap.size, floor.friction))
         return Touches(contacts, position, origin.reshape(1, 3), _OTHER)

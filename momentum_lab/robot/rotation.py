@@ -11,10 +11,10 @@ from momentum_lab.compiled import compiled
 
 @compiled("f8[::1](f8[:, :])")
 def quaternion_of(rotation: np.ndarray) -> np.ndarray:
-    """The unit quaternion xyzw (4,) of a rotation matrix (3, 3), with its largest entry positive.
+    """The unit quaternion xyzw (4,) of a rotation matrix (3, 3).
 
-    The entry whose square the diagonal gives most exactly comes first, the others follow from sums and
-    differences of the rest (Shepperd 1978).
+    One entry is a root of the diagonal: w where the trace is positive, otherwise the largest of x, y and z; that
+    one is positive, and the others follow from sums and differences of the rest (Shepperd 1978).
     """
     trace = rotation[0, 0] + rotation[1, 1] + rotation[2, 2]
     quaternion = np.empty(4)

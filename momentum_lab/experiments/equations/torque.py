@@ -57,7 +57,7 @@ def _modest_forces(scene: Scene) -> FootForces:
 
 
 def _objective(scene: Scene, feet: FootForces) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and wishes of Eq. 34, each times the root of its weight, and the ridge that pulls to the same wishes."""
+    """Rows and wishes of Eq. 34, each times the root of its weight, and the ridge, which wishes for none."""
     robot, dynamics = scene.robot, scene.dynamics
     per_inertia = np.zeros((6, 6))
     per_inertia[:3, :3], per_inertia[3:, 3:] = np.eye(3) / robot.mass, np.linalg.inv(dynamics.locked_inertia)
@@ -70,9 +70,7 @@ def _objective(scene: Scene, feet: FootForces) -> tuple[np.ndarray, np.ndarray]:
         np.sqrt(_RIDGE) * np.eye(robot.nv),
     )
     missing = per_inertia @ (feet.momentum_rate - dynamics.centroidal_bias)
-    ridge = np.zeros(robot.nv)
-    ridge[6 + robot.upper_body] = np.sqrt(_RIDGE) * wish
-    return np.concatenate(rows), np.concatenate((momentum * missing, posture * wish, ridge))
+    return np.concatenate(rows), np.concatenate((momentum * missing, posture * wish, np.zeros(robot.nv)))
 
 
 def _answer(scene: Scene, gains: ComputedTorqueGains, command: JointCommand) -> ControlOutput:
