@@ -118,7 +118,7 @@ def test_every_part_is_measured(measured: RobotBench) -> None:
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_tick_is_no_slower_than_the_peer(name: str) -> None:
+def test_tick_keeps_pace_with_the_peer(name: str) -> None:
     measured = measure(name, 1.0, lambda _: None)
     assert measured.tick_to_peer == pytest.approx(measured.tick.p50 / measured.peer_tick.p50)
     assert measured.tick_to_peer < MOST_TICK_TO_PEER
