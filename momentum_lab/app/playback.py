@@ -129,6 +129,7 @@ class Playback:
         old = getattr(self, "session", None)
         robot = old.robot if old is not None and old.scenario.robot == scenario.robot else None
         session = Session(scenario, robot, capacity=round(_MEMORY / scenario.timestep))
+        session.recording.reserve()
         self.session = session
         self._waiting.clear()
         self.stopped = None
