@@ -30,7 +30,7 @@ HISTORY_EVERY = 20
 # Ticks in a row before the pipe is looked at again.
 _BATCH = 8
 # Shorter waits than this cost more than they give, s; and how long a paused session waits for an event, s.
-_SHORT, _LONG = 0.002, 1.0
+_SHORT, _LONG = 0.001, 1.0
 # Messages taken in a row: a flood of them must not stop time.
 _MOST_MESSAGES = 16
 # Samples that a reader who does not read may miss.
