@@ -65,7 +65,6 @@ def test_reserved_memory_is_there_and_changes_nothing(robot):
     assert np.isnan([recording.next_row() for _ in range(5)]).all()
 
 
-
 def test_rows_come_back_oldest_first_before_and_after_the_ring_is_full() -> None:
     assert filled(5, 3).column("time").tolist() == [0, 1, 2]
     assert filled(5, 5).column("time").tolist() == [0, 1, 2, 3, 4]
