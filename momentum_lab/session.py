@@ -199,7 +199,7 @@ class Session:
 
     def _fall(self, dynamics: Dynamics, step: Step) -> Fall | None:
         """When and why the robot has fallen; None while it stands."""
-        if step.other_wrench.any():
+        if any(step.other_wrench.tolist()):
             return Fall(self.time, "something other than a sole touched the ground")
         if dynamics.com_in_world[2] < _FALLEN_HEIGHT * self._standing_height:
             return Fall(self.time, f"the CoM sank to {dynamics.com_in_world[2]:.2f} m")

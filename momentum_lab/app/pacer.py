@@ -1,4 +1,4 @@
-"""How many ticks are due: simulated time follows the clock, and slows down instead of catching up in a burst."""
+"""How many ticks are due: simulated time keeps just ahead of the clock, and never catches up in a burst."""
 
 from __future__ import annotations
 
@@ -7,6 +7,9 @@ from collections import deque
 LATE = 5e-3
 """A tick that begins later than this after it was due is a late one, s."""
 
+# Simulated time runs ahead of the clock by this, s, as sound is buffered: a pause of the system this short is not
+# felt, and a push that arrives meanwhile is no later for it. Shorter than one drawing.
+LEAD = 16e-3
 # What may be caught up after a short stall, s of simulated time; what is later than this never happens.
 _BACKLOG = 0.08
 # Over how long the real-time factor is measured, s.
@@ -14,7 +17,7 @@ _WINDOW = 1.0
 
 
 class Pacer:
-    """The clock of one playback.
+    """The clock of one playback: tick k belongs to k time steps after the start, and may begin `LEAD` before.
 
     Args:
         timestep: length of a tick, s.
@@ -38,7 +41,7 @@ class Pacer:
         self._marks.clear()
 
     def due(self, now: float) -> int:
-        """Ticks that should have happened by now and have not."""
+        """Ticks that may begin by now and have not."""
         due = self._owed(now)
         late = due - max(1, round(_BACKLOG / self._timestep))
         if late > 0:
@@ -48,13 +51,13 @@ class Pacer:
         return due
 
     def begin(self, now: float) -> None:
-        """A tick begins."""
+        """A tick begins; late is judged by the moment it belongs to, not by that of its lead."""
         self._ticks += 1
         self.late_ticks += now - self._start - self._ticks * self._timestep / self._speed > LATE
 
     def wait(self, now: float) -> float:
-        """How long until the next tick is due, s."""
-        next_tick = self._start + (self._ticks + 1) * self._timestep / self._speed
+        """How long until the next tick may begin, s."""
+        next_tick = self._start + (self._ticks + 1) * self._timestep / self._speed - LEAD
         return max(0.0, next_tick - now)
 
     def real_time_factor(self, now: float) -> float:
@@ -69,4 +72,4 @@ class Pacer:
 
     def _owed(self, now: float) -> int:
         # A tick that is due this very moment must not be missed by a rounding error.
-        return int((now - self._start) * self._speed / self._timestep + 1e-6) - self._ticks
+        return int((now + LEAD - self._start) * self._speed / self._timestep + 1e-6) - self._ticks

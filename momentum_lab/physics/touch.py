@@ -17,8 +17,6 @@ from momentum_lab.robot.state import Dynamics, State
 
 # Points this close to the ground take part in the contact problem, m.
 _MARGIN = 0.01
-# No point of a falling humanoid is faster than this, m/s; it bounds how long a clear body stays clear.
-_FASTEST = 20.0
 # Instead of a foot's index.
 _OTHER = np.array([-1])
 _MATRIX, _VECTOR, _STACK = "f8[:, ::1]", "f8[::1]", "f8[:, :, ::1]"
@@ -160,8 +158,12 @@ def together(first: Touches, second: Touches) -> Touches:
 class BodyPoints:
     """The points of all bodies but the soles, looked at only when one of them may be near the floor.
 
-    A clear body cannot reach the floor before its clearance divided by the largest possible speed has passed,
-    so most steps need no kinematics. A state that does not follow the last one seen is always looked at.
+    No point of a body is faster than the sum of what each velocity of the robot can move it by, |v_j| times the
+    longest lever there can be. Until that has used up its clearance, the body cannot have reached the floor, and
+    no kinematics are needed. A state that does not follow the last one seen is always looked at.
+
+    Attributes:
+        reach: how far a unit of each velocity can move any point of each body in a step (B, nv), m s.
     """
 
     def __init__(self, robot: RobotModel, timestep: float) -> None:
@@ -172,29 +174,36 @@ class BodyPoints:
         self._points = [
             np.array([frame.placement.act(np.array(p)) for p in points]) for frame, points in links
         ]
-        self._step_length = _FASTEST * timestep
+        reaches = [
+            reach_of(model, joint, points) for joint, points in zip(self._joints, self._points, strict=True)
+        ]
+        self.reach = timestep * np.array(reaches)
         self._expected: State | None = None
-        self._clearance = 0.0
+        self._clearance = np.zeros(len(links))
+        self._clear = False
 
     def follow(self, state: State) -> None:
         """Note that `state` is where the last step has led."""
         self._expected = state
-        self._clearance -= self._step_length
+        self._clear = still_clear(self._clearance, self.reach, state.v)
 
     def touches(self, state: State, floor: Patch) -> Touches | None:
         """The points near the floor, body by body; None when there are none."""
-        if not self._points or (state is self._expected and self._clearance > _MARGIN):
+        if not self._points or (self._clear and state is self._expected):
             return None
-        pin.computeJointJacobians(self._model, self._data, state.q)
+        pin.forwardKinematics(self._model, self._data, state.q)
         positions = [self._in_world(j, points) for j, points in zip(self._joints, self._points, strict=True)]
         gaps = [floor.gap(position) for position in positions]
-        self._clearance = min(float(gap.min()) for gap in gaps)
+        self._clearance = np.array([gap.min() for gap in gaps])
+        if not self._clearance.min() < _MARGIN:  # so that NaN, too, touches nothing
+            return None
+        pin.computeJointJacobians(self._model, self._data)
         touches = [
             self._touch(joint, position[gap < _MARGIN], gap[gap < _MARGIN], floor)
             for joint, position, gap in zip(self._joints, positions, gaps, strict=True)
             if gap.min() < _MARGIN
         ]
-        return reduce(together, touches) if touches else None
+        return reduce(together, touches)
 
     def _in_world(self, joint: int, points: np.ndarray) -> np.ndarray:
         placement = self._data.oMi[joint]
@@ -208,3 +217,37 @@ class BodyPoints:
         spread = spread_of(position, origin, np.ascontiguousarray(floor.rotation))
         contacts = Contacts(jacobian, spread, gap, np.full(gap.size, floor.friction))
         return Touches(contacts, position, origin.reshape(1, 3), _OTHER)
+
+
+def reach_of(model: pin.Model, joint: int, points: np.ndarray) -> np.ndarray:
+    """How fast a unit of each velocity of the robot can at most move any of a body's points (nv,), m or none.
+
+    Args:
+        model: a tree of revolute joints on a free-flyer.
+        joint: what carries the body.
+        points: in the frame of that joint (n, 3), m.
+    """
+    reach, lever = np.zeros(model.nv), float(np.linalg.norm(points, axis=1).max())
+    while joint > 1:
+        reach[model.idx_vs[joint]] = lever
+        lever += float(np.linalg.norm(model.jointPlacements[joint].translation))
+        joint = model.parents[joint]
+    reach[:3], reach[3:6] = 1.0, lever
+    return reach
+
+
+@compiled(f"b1({_VECTOR}, {_MATRIX}, {_VECTOR})")
+def still_clear(clearance: np.ndarray, reach: np.ndarray, velocity: np.ndarray) -> bool:
+    """Whether all bodies are surely clear of the floor after one more step; their clearance shrinks by that step.
+
+    Args:
+        clearance: at least so far is each body from the floor (B,), m; changed in place.
+        reach: how far a unit of each velocity can move any point of each body in a step (B, nv), m s.
+        velocity: of the step (nv,).
+    """
+    clear = True
+    for body in range(len(clearance)):
+        for j in range(len(velocity)):
+            clearance[body] -= reach[body, j] * abs(velocity[j])
+        clear &= clearance[body] > _MARGIN
+    return clear

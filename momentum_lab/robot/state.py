@@ -14,10 +14,13 @@ import numpy as np
 from momentum_lab.compiled import compiled
 
 
-@compiled("boolean(f8[::1])")
-def all_finite(numbers: np.ndarray) -> bool:
-    """Whether no number of (n,) is infinite or NaN."""
-    for number in numbers:  # noqa: SIM110 - numba compiles no all()
+@compiled("boolean(f8[::1], f8[::1])")
+def both_finite(q: np.ndarray, v: np.ndarray) -> bool:
+    """Whether no number of a configuration (nq,) and a velocity (nv,) is infinite or NaN."""
+    for number in q:
+        if not math.isfinite(number):
+            return False
+    for number in v:  # noqa: SIM110 - numba compiles no all()
         if not math.isfinite(number):
             return False
     return True
@@ -37,7 +40,7 @@ class State:
 
     def is_finite(self) -> bool:
         """Whether every number of the state is finite."""
-        return all_finite(self.q) and all_finite(self.v)
+        return both_finite(self.q, self.v)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,10 @@
-"""Simulated time follows the clock, and never catches up in a burst."""
+"""Simulated time keeps just ahead of the clock, and never catches up in a burst."""
 
 from __future__ import annotations
 
 import pytest
 
-from momentum_lab.app.pacer import Pacer
+from momentum_lab.app.pacer import LEAD, Pacer
 
 
 def run(pacer: Pacer, start: float, seconds: float, every: float, most: int = 10**9) -> int:
@@ -24,21 +24,36 @@ def run(pacer: Pacer, start: float, seconds: float, every: float, most: int = 10
 def test_ticks_per_second(speed, ticks):
     pacer = Pacer(1e-3)
     pacer.start(100.0, speed)
-    assert run(pacer, 100.0, 2.0, 0.004) == pytest.approx(ticks, abs=1)
+    assert run(pacer, 100.0, 2.0, 0.004) == pytest.approx(ticks + speed * LEAD / 1e-3, abs=1)
 
 
-def test_nothing_is_due_at_the_start():
+@pytest.mark.parametrize("speed", [1.0, 0.25])
+def test_simulated_time_keeps_ahead_of_the_clock_by_the_lead(speed):
     pacer = Pacer(1e-3)
-    pacer.start(5.0, 1.0)
-    assert pacer.due(5.0) == 0
-    assert pacer.wait(5.0) == pytest.approx(1e-3)
+    pacer.start(5.0, speed)
+    ahead = pacer.due(5.0)
+    assert ahead * 1e-3 == pytest.approx(speed * LEAD)
+    for _ in range(ahead):
+        pacer.begin(5.0)
+    assert pacer.wait(5.0) == pytest.approx(1e-3 / speed)
+    assert pacer.due(5.0 + 0.9 * pacer.wait(5.0)) == 0
     assert pacer.due(5.0 + pacer.wait(5.0)) == 1
+
+
+def test_a_stall_no_longer_than_lead_and_bound_together_is_not_late():
+    pacer = Pacer(1e-3)
+    pacer.start(0.0, 1.0)
+    for now in (0.0, 0.0095, 0.0190):
+        for _ in range(pacer.due(now)):
+            pacer.begin(now)
+    assert pacer.late_ticks == 0
+    assert pacer.due(0.0190) == 0
 
 
 def test_a_short_stall_is_caught_up():
     pacer = Pacer(1e-3)
     pacer.start(0.0, 1.0)
-    assert pacer.due(0.05) == 50
+    assert pacer.due(0.05) == 50 + round(LEAD / 1e-3)
 
 
 def test_a_long_stall_is_not_caught_up():
@@ -89,6 +104,6 @@ def test_a_new_start_is_not_late():
     pacer = Pacer(1e-3)
     pacer.start(0.0, 1.0)
     pacer.start(60.0, 1.0)
-    assert pacer.due(60.001) == 1
-    pacer.begin(60.001)
+    for _ in range(pacer.due(60.001)):
+        pacer.begin(60.001)
     assert pacer.late_ticks == 0

@@ -104,3 +104,25 @@ def test_looking_away_misses_no_touch(robot):
         state = simulator.step(robot.at(state), damping, (), 0.0).state
         following.follow(state)
     assert seen > 0
+
+
+def test_no_point_is_faster_than_its_reach_says(robot, rng):
+    """Random states far from home: each body's points, by finite differences, against the bound from the levers."""
+    bodies = BodyPoints(robot, 1.0)
+    links = list(robot.spec.fall_points.items())
+
+    def points_at(q):
+        data = robot.model.createData()
+        pin.framesForwardKinematics(robot.model, data, q)
+        return [np.array([data.oMf[robot.frame(link)].act(np.array(p)) for p in ps]) for link, ps in links]
+
+    closest = 0.0
+    for _ in range(20):
+        q = pin.integrate(robot.model, standing_posture(robot), rng.normal(scale=1.0, size=robot.nv))
+        v = rng.normal(size=robot.nv)
+        after, before = points_at(pin.integrate(robot.model, q, EPS * v)), points_at(q)
+        for body, bound in enumerate(bodies.reach @ np.abs(v)):
+            speed = np.linalg.norm(after[body] - before[body], axis=1).max() / EPS
+            assert speed <= bound
+            closest = max(closest, speed / bound)
+    assert closest > 0.3  # a bound that is never nearly needed would look away too seldom
