@@ -26,6 +26,7 @@ class AppMeasurement:
         drawings_per_second: pictures of a moving robot received per second.
         messages_per_second: everything received per second.
         late_ticks_per_minute: ticks that began more than 5 ms after they were due.
+        stolen: processor time that the host of a virtual machine gave to others, ms per minute; NaN: not told.
         server_cpu: time of the server's process, which draws and does not simulate, per second.
         push_delay: from sending a push to the first drawing that shows it, median, s.
         push_delay_longest: the longest of them, s.
@@ -43,6 +44,7 @@ class AppMeasurement:
     drawings_per_second: float
     messages_per_second: float
     late_ticks_per_minute: float
+    stolen: float
     server_cpu: float
     push_delay: float
     push_delay_longest: float
@@ -102,6 +104,7 @@ def _pace(m: AppMeasurement) -> list[Figure]:
         ),
         _at_least("drawings per second", m.drawings_per_second, FEWEST_DRAWINGS),
         _at_most("ticks over 5 ms late, per minute", m.late_ticks_per_minute, MOST_LATE_TICKS),
+        _told("taken by the machine's host, ms per minute", m.stolen),
         _at_most("push to drawing, longest, ms", 1e3 * m.push_delay_longest, 1e3 * LONGEST_DELAY),
         _told("push to drawing, median, ms", 1e3 * m.push_delay),
     ]

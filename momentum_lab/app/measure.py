@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from momentum_lab.app.bare_client import BareClient, Received
 from momentum_lab.app.figures import AppMeasurement, growth, longest_gap
-from momentum_lab.app.measured_server import MeasuredServer
+from momentum_lab.app.measured_server import MeasuredServer, stolen_time
 from momentum_lab.errors import ServerError
 from momentum_lab.scenario import Scenario, load_scenario
 
@@ -83,9 +83,10 @@ def _measured(
     client.set_value(PUSH, True)
     received = client.read(_WARM_UP)
     before, then, simulated = server.vitals(), *received.told
-    pictures, messages, start = received.drawings, received.messages, time.perf_counter()
+    pictures, messages, stolen = received.drawings, received.messages, stolen_time()
+    start = time.perf_counter()
     course = _run(server, client, seconds, report)
-    elapsed, after = time.perf_counter() - start, server.vitals()
+    elapsed, after, stolen = time.perf_counter() - start, server.vitals(), stolen_time() - stolen
     pictures, messages = received.drawings - pictures, received.messages - messages
     now, simulated_now = received.told
     sent_while_paused = _paused(client)
@@ -97,6 +98,7 @@ def _measured(
         drawings_per_second=pictures / elapsed,
         messages_per_second=messages / elapsed,
         late_ticks_per_minute=(after.late_ticks - before.late_ticks) / (elapsed / 60.0),
+        stolen=1e3 * stolen / (elapsed / 60.0),
         server_cpu=(after.cpu - before.cpu) / elapsed,
         push_delay=statistics.median(course.delays),
         push_delay_longest=max(course.delays),

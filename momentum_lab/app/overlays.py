@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -32,6 +33,8 @@ _SIDE = np.array([0.47, -0.88])
 _LEFT = np.array([-0.88, -0.47])
 # A dash and a pause of the safe border, m.
 _DASH = 0.012
+# A safe border that moves by less than this many digits of a metre looks the same.
+_DIGITS = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +113,7 @@ def _support(sample: Sample, picture: Picture, polygon: np.ndarray, ground: floa
         Mark("support", tuple(_on_ground("support", corner, ground) for corner in polygon.tolist())),
         Mark(
             "safe_border",
-            _dashes(safe, ground),
+            _dashes(tuple(map(tuple, safe.round(_DIGITS).tolist())), round(ground, _DIGITS)),
             text=f"CoP {round(1e3 * margin)} mm from the edge" if math.isfinite(margin) else "",
             at=_on_ground("safe_border", _out_of_the_way(polygon, sample["com"][2]), ground),
         ),
@@ -208,9 +211,11 @@ def _beside(start: np.ndarray, end: np.ndarray, size: float) -> Point:
     return _point(middle)
 
 
-def _dashes(polygon: np.ndarray, ground: float) -> tuple[Point, ...]:
-    """Starts and ends of the dashes along a polygon."""
+@lru_cache(maxsize=16)
+def _dashes(corners: tuple[tuple[float, float], ...], ground: float) -> tuple[Point, ...]:
+    """Starts and ends of the dashes along a polygon; that of standing feet is asked for again and again."""
     ends: list[Point] = []
+    polygon = np.array(corners)
     for corner, following in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         count = max(1, round(float(np.linalg.norm(following - corner)) / (2.0 * _DASH)))
         for i in range(count):

@@ -13,7 +13,7 @@ from momentum_lab.app.robots import LoadedRobot
 _ROOT = "/robot"
 _FREE_FLYER = 1
 # Less than this does not show, rad and m.
-_SAME_ANGLE, _SAME_PLACE = 3e-4, 2e-4
+_SAME_ANGLE, _SAME_PLACE = 6e-4, 2e-4
 _SEE_THROUGH = 0.3
 
 

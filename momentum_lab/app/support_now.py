@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
@@ -12,6 +13,9 @@ from momentum_lab.recording import Sample
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.status import carrying_feet
 
+# A standing foot that creeps by less than this many digits of a metre keeps its polygon.
+_DIGITS = 6
+
 
 def sole_placement(sample: Sample, foot: int) -> pin.SE3:
     """Where a sole frame is in the world."""
@@ -19,14 +23,27 @@ def sole_placement(sample: Sample, foot: int) -> pin.SE3:
 
 
 def polygon_of(sample: Sample, robot: RobotModel, border: float = 0.0) -> np.ndarray:
-    """The support polygon of the feet that carry, without a border along each sole's edge (K, 2), m.
+    """The support polygon of the feet that carry, without a border along each sole's edge (K, 2), m; not to be changed.
 
     Args:
         sample: the sample.
         robot: whose soles they are.
         border: width of the border, m.
     """
-    corners = [_corners_in_world(sample, robot, foot, border) for foot in carrying_feet(sample, robot.mass)]
+    feet = carrying_feet(sample, robot.mass)
+    poses = tuple(tuple(sample["sole_pose"][foot].round(_DIGITS).tolist()) for foot in feet)
+    return _polygon(robot, feet, poses, border)
+
+
+@lru_cache(maxsize=64)
+def _polygon(
+    robot: RobotModel, feet: tuple[int, ...], poses: tuple[tuple[float, ...], ...], border: float
+) -> np.ndarray:
+    """The polygon of some soles at some poses; standing feet are asked for it again and again."""
+    corners = [
+        _corners_in_world(pin.XYZQUATToSE3(np.array(pose)), robot, foot, border)
+        for foot, pose in zip(feet, poses, strict=True)
+    ]
     return support_polygon(np.concatenate(corners)) if corners else np.zeros((0, 2))
 
 
@@ -49,8 +66,8 @@ def extent(polygon: np.ndarray, direction: np.ndarray) -> tuple[float, float]:
     )
 
 
-def _corners_in_world(sample: Sample, robot: RobotModel, foot: int, border: float) -> np.ndarray:
-    sole, placement = robot.soles[foot], sole_placement(sample, foot)
+def _corners_in_world(placement: pin.SE3, robot: RobotModel, foot: int, border: float) -> np.ndarray:
+    sole = robot.soles[foot]
     lower, upper = inset_rectangle(sole.lower, sole.upper, border)
     (rear, right), (front, left) = lower.tolist(), upper.tolist()
     corners = np.array([[rear, right, 0.0], [front, right, 0.0], [front, left, 0.0], [rear, left, 0.0]])

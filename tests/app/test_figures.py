@@ -16,6 +16,7 @@ def measurement(**changes: object) -> AppMeasurement:
         "drawings_per_second": 40.0,
         "messages_per_second": 1300.0,
         "late_ticks_per_minute": 0.0,
+        "stolen": 0.0,
         "server_cpu": 0.1,
         "push_delay": 0.02,
         "push_delay_longest": 0.04,

@@ -1,4 +1,4 @@
-"""The whole measurement in its short form: the real server, two clients, and believable figures."""
+"""The whole measurement in its 20 s form: the real server, two clients, and believable figures."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from momentum_lab.app.figures import AppMeasurement, figures
 from momentum_lab.app.measure import Course, measure_app
 
 # A machine that runs other things at the same time may be this much slower than the bounds of the report.
-SECONDS = 4.5
+SECONDS = 20.0
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def measured() -> AppMeasurement:
 
 def test_every_line_is_told(measured, capsys):
     lines = [f"{f.name}: {f.value} ({f.bound or 'no bound'})" for f in figures(measured)]
-    assert len(lines) == 13
+    assert len(lines) == 14
     with capsys.disabled():  # bounds of a quiet machine are read here, not judged
         print("\n" + "\n".join(lines))
 
@@ -49,7 +49,7 @@ def test_nothing_is_sent_while_nothing_changes(measured):
 
 
 def test_a_second_client_does_not_stop_the_first(measured):
-    assert measured.aged == pytest.approx(27.0)
+    assert measured.aged == pytest.approx(120.0)
     assert 0.0 < measured.stall < 1.5
     assert measured.stall < measured.first_picture_aged < 30.0
 

@@ -12,7 +12,7 @@ import pytest
 
 from momentum_lab.app.bare_client import BareClient
 from momentum_lab.app.measure import PUSH
-from momentum_lab.app.measured_server import MeasuredServer, resident_memory
+from momentum_lab.app.measured_server import MeasuredServer, resident_memory, stolen_time
 from momentum_lab.errors import ServerError
 from momentum_lab.scenario import Scenario
 from tests.app.test_server import children
@@ -75,3 +75,10 @@ def test_a_lab_that_cannot_start_is_told(capfd):
     with pytest.raises(ServerError, match=r"^app: got no answer; allowed: one within 60 s"):
         MeasuredServer(Scenario("stand", robot="nobody"))
     assert "robot: got nobody" in capfd.readouterr().err
+
+
+def test_the_host_takes_no_more_time_than_there_is():
+    before, start = stolen_time(), time.perf_counter()
+    time.sleep(0.3)
+    taken, passed = stolen_time() - before, time.perf_counter() - start
+    assert math.isnan(taken) or 0.0 <= taken <= 1.1 * passed * (os.cpu_count() or 1)
