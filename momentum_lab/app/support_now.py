@@ -23,7 +23,7 @@ def sole_placement(sample: Sample, foot: int) -> pin.SE3:
 
 
 def polygon_of(sample: Sample, robot: RobotModel, border: float = 0.0) -> np.ndarray:
-    """The support polygon of the feet that carry, without a border along each sole's edge (K, 2), m; not to be changed.
+    """The support polygon of the feet that carry, without a border along the soles (K, 2), m; not to change.
 
     Args:
         sample: the sample.

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from momentum_lab.compiled import compiled
+from momentum_lab.control import common_gains
 from momentum_lab.control.accelerations import AccelerationProgram, MotionWeights
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_momentum_rate
@@ -29,18 +30,10 @@ _FORGETTING_TIME = 0.05
 class ComputedTorqueGains:
     """Gains of the momentum-based computed torque controller."""
 
-    linear_damping: float = gain(
-        8.0, "1/s", 0.0, 60.0, "Gamma_21: how strongly the velocity of the CoM is braked (Eq. 38)."
-    )
-    linear_stiffness: float = gain(
-        16.0, "1/s^2", 0.0, 200.0, "Gamma_22: how strongly the CoM is pulled back over the feet (Eq. 38)."
-    )
-    angular_damping: float = gain(
-        5.0, "1/s", 0.0, 40.0, "Gamma_11: how strongly angular momentum is braked (Eq. 37)."
-    )
-    pelvis_stiffness: float = gain(
-        4.0, "1/s^2", 0.0, 60.0, "K_theta: how strongly the pelvis is turned upright; an extension of Eq. 37."
-    )
+    linear_damping: float = common_gains.linear_damping()
+    linear_stiffness: float = common_gains.linear_stiffness()
+    angular_damping: float = common_gains.angular_damping()
+    pelvis_stiffness: float = common_gains.pelvis_stiffness()
     momentum_weight: float = gain(
         0.9999, "1", 0.5, 0.99999, "w_b: momentum against posture where both cannot be met (Eq. 34)."
     )
@@ -57,19 +50,11 @@ class ComputedTorqueGains:
         100.0,
         "Weight of an upright pelvis against the posture of the upper body; an extension.",
     )
-    contact_damping: float = gain(
-        50.0, "1/s", 0.0, 200.0, "kappa: how fast a stance foot is brought to rest and flat (Eq. 31)."
-    )
-    safe_border: float = gain(
-        0.005, "m", 0.0, 0.02, "How far inside the edge of the sole the admissible CoP stays."
-    )
-    friction: float = gain(0.6, "1", 0.05, 1.5, "Friction coefficient the controller counts on.")
-    least_foot_force: float = gain(
-        0.02, "1", 0.005, 0.2, "Part of the weight that every stance foot keeps carrying."
-    )
-    joint_limit_rate: float = gain(
-        25.0, "1/s", 5.0, 100.0, "How late a joint may brake before its limit: larger is later (Eq. 34)."
-    )
+    contact_damping: float = common_gains.contact_damping()
+    safe_border: float = common_gains.safe_border()
+    friction: float = common_gains.friction()
+    least_foot_force: float = common_gains.least_foot_force()
+    joint_limit_rate: float = common_gains.joint_limit_rate()
     feedback_stiffness: float = gain(
         0.0,
         "N m/rad",

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from momentum_lab.control import common_gains
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_linear_rate
 from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture, without_ground
@@ -32,11 +33,9 @@ class PlacoWbcGains:
         100.0, "1/s^2", 0.0, 400.0, "How strongly all joints are pulled to their posture."
     )
     posture_damping: float = gain(20.0, "1/s", 0.0, 60.0, "How strongly the motion of all joints is braked.")
-    contact_damping: float = gain(
-        50.0, "1/s", 0.0, 200.0, "kappa: how fast a stance foot is brought to rest and flat."
-    )
-    safe_border: float = gain(0.005, "m", 0.0, 0.02, "How far inside the edge of each sole its CoP stays.")
-    friction: float = gain(0.6, "1", 0.05, 1.5, "Friction coefficient the controller counts on.")
+    contact_damping: float = common_gains.contact_damping()
+    safe_border: float = common_gains.safe_border()
+    friction: float = common_gains.friction()
 
 
 class PlacoWbc:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from momentum_lab.control import common_gains
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.fallback import hold
 from momentum_lab.control.foot_forces import Footing
@@ -59,19 +60,11 @@ class SlackGains:
     swing_weight: float = gain(10.0, "1", 0.0, 1e3, "W of the swing foot's slack (Eq. 62).")
     pelvis_weight: float = gain(10.0, "1", 0.0, 1e3, "W of the pelvis orientation's slack (Eq. 62).")
     posture_weight: float = gain(1.0, "1", 0.0, 1e3, "W of the upper body's slack (Eq. 62).")
-    contact_damping: float = gain(
-        50.0, "1/s", 0.0, 200.0, "kappa: how fast a stance foot is brought to rest and flat (Eq. 31)."
-    )
-    safe_border: float = gain(
-        0.005, "m", 0.0, 0.02, "How far inside the edge of the sole the CoP is kept (Eq. 52)."
-    )
-    friction: float = gain(0.6, "1", 0.05, 1.5, "Friction coefficient the controller counts on.")
-    least_foot_force: float = gain(
-        0.02, "1", 0.005, 0.2, "Part of the weight that every stance foot keeps carrying."
-    )
-    joint_limit_rate: float = gain(
-        25.0, "1/s", 5.0, 100.0, "How late a joint may brake before its limit: larger is later."
-    )
+    contact_damping: float = common_gains.contact_damping()
+    safe_border: float = common_gains.safe_border()
+    friction: float = common_gains.friction()
+    least_foot_force: float = common_gains.least_foot_force()
+    joint_limit_rate: float = common_gains.joint_limit_rate()
 
 
 class SlackQP:

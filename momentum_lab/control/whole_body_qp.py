@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from momentum_lab.control import common_gains
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_angular_rate, desired_linear_rate
 from momentum_lab.control.fallback import hold
@@ -43,18 +44,10 @@ _SECOND = 1e-3
 class WholeBodyGains:
     """Gains of the whole-body quadratic program."""
 
-    linear_damping: float = gain(
-        8.0, "1/s", 0.0, 60.0, "Gamma_21: how strongly the velocity of the CoM is braked (Eq. 38)."
-    )
-    linear_stiffness: float = gain(
-        16.0, "1/s^2", 0.0, 200.0, "Gamma_22: how strongly the CoM is pulled back over the feet (Eq. 38)."
-    )
-    angular_damping: float = gain(
-        5.0, "1/s", 0.0, 40.0, "Gamma_11: how strongly angular momentum is braked (Eq. 37)."
-    )
-    pelvis_stiffness: float = gain(
-        4.0, "1/s^2", 0.0, 60.0, "K_theta: how strongly the pelvis is turned upright; an extension of Eq. 37."
-    )
+    linear_damping: float = common_gains.linear_damping()
+    linear_stiffness: float = common_gains.linear_stiffness()
+    angular_damping: float = common_gains.angular_damping()
+    pelvis_stiffness: float = common_gains.pelvis_stiffness()
     lqr_share: float = gain(
         0.0, "1", 0.0, 1.0, "0: momentum rates of Eqs. 37, 38; 1: those of a linear-quadratic regulator."
     )
@@ -82,19 +75,11 @@ class WholeBodyGains:
     force_weight: float = gain(
         1e-3, "1", 1e-5, 10.0, "Weight of an even share of the weight between the feet."
     )
-    contact_damping: float = gain(
-        50.0, "1/s", 0.0, 200.0, "kappa: how fast a stance foot is brought to rest and flat (Eq. 31)."
-    )
-    safe_border: float = gain(
-        0.005, "m", 0.0, 0.02, "How far inside the edge of the sole the CoP of each foot stays."
-    )
-    friction: float = gain(0.6, "1", 0.05, 1.5, "Friction coefficient the controller counts on.")
-    least_foot_force: float = gain(
-        0.02, "1", 0.005, 0.2, "Part of the weight that every stance foot keeps carrying."
-    )
-    joint_limit_rate: float = gain(
-        25.0, "1/s", 5.0, 100.0, "How late a joint may brake before its limit: larger is later."
-    )
+    contact_damping: float = common_gains.contact_damping()
+    safe_border: float = common_gains.safe_border()
+    friction: float = common_gains.friction()
+    least_foot_force: float = common_gains.least_foot_force()
+    joint_limit_rate: float = common_gains.joint_limit_rate()
 
 
 class WholeBodyQP:
