@@ -75,8 +75,18 @@ class LoadScenario(msgspec.Struct, frozen=True, tag=True):
     name: str
 
 
+class LookBack(msgspec.Struct, frozen=True, tag=True):
+    """Stop simulated time and show what was so many seconds before its present end; 0 is the end itself."""
+
+    seconds: float
+
+
+class Branch(msgspec.Struct, frozen=True, tag=True):
+    """Go on from the instant that is looked at, with the gains, priority and controller of now."""
+
+
 SessionEvent = SetGain | SetPriority | SelectController | ApplyPush | Reset
-PlaybackEvent = Play | Pause | StepOnce | SetSpeed | SelectRobot | LoadScenario
+PlaybackEvent = Play | Pause | StepOnce | SetSpeed | SelectRobot | LoadScenario | LookBack | Branch
 Event = SessionEvent | PlaybackEvent
 
 

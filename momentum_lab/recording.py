@@ -119,14 +119,21 @@ class Recording:
         self.slices = layout.slices
         # Rows that are never written cost no memory.
         self._rows = np.empty((capacity, layout.width))
-        self._count = 0
+        self._count = self._oldest = self._reserved = 0
 
     def __len__(self) -> int:
-        return min(self._count, self.capacity)
+        return self._count - self._first
 
-    def reserve(self) -> None:
-        """Touch all memory now: a page that a tick touches first, 2 MB of it, makes that tick 5 ms late."""
-        self._rows.fill(np.nan)
+    @property
+    def _first(self) -> int:
+        """Number of the oldest sample that is kept."""
+        return max(self._oldest, self._count - self.capacity)
+
+    def reserve(self, samples: int) -> None:
+        """Touch the memory of so many more samples now: a page that a tick touches first makes that tick late."""
+        start = max(self._reserved, self._count)
+        self._rows[start : start + samples].fill(np.nan)
+        self._reserved = start + samples
 
     def next_row(self) -> np.ndarray:
         """Room for one more sample (width,), to be filled at once."""
@@ -136,10 +143,12 @@ class Recording:
 
     def rows(self, every: int = 1) -> np.ndarray:
         """All rows that are kept, oldest first (n, width); of `every` rows only the first."""
-        if self._count <= self.capacity:
-            return self._rows[: self._count : every]
-        start = self._count % self.capacity
-        return np.concatenate([self._rows[start:], self._rows[:start]])[::every]
+        if not len(self):
+            return self._rows[:0]
+        start, end = self._first % self.capacity, (self._count - 1) % self.capacity + 1
+        if start < end:
+            return self._rows[start:end:every]
+        return np.concatenate([self._rows[start:], self._rows[:end]])[::every]
 
     def column(self, name: str, every: int = 1) -> np.ndarray:
         """One quantity over time, oldest first (n, *shape)."""
@@ -151,11 +160,26 @@ class Recording:
         """The last sample."""
         if not self._count:
             raise InputError("recording", "no samples", "a recording of at least one tick")
-        return Sample(self.layout, self.slices, self._rows[(self._count - 1) % self.capacity])
+        return self.before_end(0)
+
+    def before_end(self, samples: int) -> Sample:
+        """The sample so many before the last one.
+
+        Raises:
+            InputError: so many are not kept.
+        """
+        if not 0 <= samples < len(self):
+            raise InputError("recording", f"the sample {samples} before the last", f"one of {len(self)}")
+        return Sample(self.layout, self.slices, self._rows[(self._count - 1 - samples) % self.capacity])
+
+    def forget_last(self, samples: int) -> None:
+        """Forget so many samples at the end; those that have given way to them do not come back."""
+        self._oldest = self._first
+        self._count = max(self._oldest, self._count - samples)
 
     def clear(self) -> None:
         """Forget all samples."""
-        self._count = 0
+        self._count = self._oldest = 0
 
 
 @dataclass(frozen=True)

@@ -54,6 +54,19 @@ class Fall:
     reason: str
 
 
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """Where a session was at the start of a tick: all that changes while it runs.
+
+    Attributes:
+        ticks: how many ticks it had done.
+        changing: its changing attributes by name; none of them is ever changed in place.
+    """
+
+    ticks: int
+    changing: dict[str, Any]
+
+
 class Session:
     """One robot, one controller, one clock.
 
@@ -66,7 +79,7 @@ class Session:
         InputError: the scenario names something that does not exist.
     """
 
-    # What changes while the session runs; everything else is decided when it begins.
+    # What changes while the session runs, and a snapshot holds; everything else is decided when it begins.
     state: State
     pushes: tuple[Push, ...]
     priority: float
@@ -75,12 +88,12 @@ class Session:
     fall: Fall | None
     solver_failures: int
     last_failure: str | None
+    _scripted: tuple[Push, ...]
     _controller: Controller
     _memory: Any
     _torque: np.ndarray | None
     _taken_over: bool
     _handover: Handover | None
-    _simulator: Simulator
     _tick_of_run: int
 
     def __init__(
@@ -145,6 +158,20 @@ class Session:
         sample = self._record(dynamics, output, step)
         self._advance(output, step)
         return sample
+
+    def snapshot(self) -> Snapshot:
+        """Where the session is, between two ticks."""
+        return Snapshot(self.ticks, {name: getattr(self, name) for name in Session.__annotations__})
+
+    def resume(self, snapshot: Snapshot) -> None:
+        """Go back to where the session was; what has been recorded, logged and posted since is forgotten."""
+        self.recording.forget_last(self._tick_of_run - snapshot.changing["_tick_of_run"])
+        for name, value in snapshot.changing.items():
+            setattr(self, name, value)
+        self.ticks = snapshot.ticks
+        self.log = [entry for entry in self.log if entry.tick < snapshot.ticks]
+        self._inbox.clear()
+        self._simulator = Simulator(self.robot, self._ground, self.scenario.timestep)
 
     def _drain_inbox(self) -> None:
         while self._inbox:

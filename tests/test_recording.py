@@ -60,9 +60,28 @@ def trace(path: Path) -> Trace:
 def test_reserved_memory_is_there_and_changes_nothing(robot):
     """Every row has been written, none counts as a sample."""
     recording = Recording(Layout.of(robot), 5)
-    recording.reserve()
+    recording.reserve(2)
     assert len(recording) == 0
-    assert np.isnan([recording.next_row() for _ in range(5)]).all()
+    recording.next_row()[:] = 7.0
+    recording.reserve(100)
+    assert len(recording) == 1
+    assert (recording.latest.row == 7.0).all()
+    assert np.isnan([recording.next_row() for _ in range(4)]).all()
+
+
+def test_what_is_forgotten_at_the_end_is_written_anew() -> None:
+    recording = filled(5, 13)
+    recording.forget_last(2)
+    assert recording.column("time").tolist() == [8, 9, 10]
+    assert recording.before_end(2).number("time") == 8
+    with pytest.raises(InputError, match=r"^recording: got the sample 3 before the last; allowed: one of 3$"):
+        recording.before_end(3)
+    for time in (21, 22, 23):
+        recording.next_row()[0] = time
+    assert recording.column("time").tolist() == [9, 10, 21, 22, 23]
+    recording.forget_last(99)
+    assert len(recording) == 0
+    assert recording.column("time").tolist() == []
 
 
 def test_rows_come_back_oldest_first_before_and_after_the_ring_is_full() -> None:

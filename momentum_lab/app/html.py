@@ -36,10 +36,19 @@ def status_line(kind: str, words: str, color: str) -> str:
     )
 
 
-def time_line(time: float, real_time_factor: float, speed: float, playing: bool, failures: int = 0) -> str:
+def time_line(
+    time: float,
+    real_time_factor: float,
+    speed: float,
+    playing: bool,
+    failures: int = 0,
+    behind: float = 0.0,
+) -> str:
     """Simulated time and how it runs, in figures that do not change their width."""
     asked = "" if speed == 1.0 else f" · speed {speed:g}"
     pace = f"{real_time_factor:.2f} × real time" if playing else "paused"
+    if behind:
+        pace = f"{behind:.2f} s before the end"
     return f'<div class="lab n dim">simulated time <b>{time:.2f} s</b> · {pace}{asked}{_failures(failures)}</div>'
 
 

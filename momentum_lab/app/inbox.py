@@ -8,11 +8,12 @@ from collections.abc import Collection
 import msgspec
 
 from momentum_lab.errors import InputError
-from momentum_lab.events import ApplyPush, Event, LoadScenario, SelectRobot, SetSpeed, StepOnce
+from momentum_lab.events import ApplyPush, Event, LoadScenario, LookBack, SelectRobot, SetSpeed, StepOnce
 from momentum_lab.physics.push import Push
 
 SLOWEST = 1.0 / 8.0
 MOST_TICKS = 1000
+MOST_SECONDS = 3600.0
 _MOST_LETTERS = 200
 
 
@@ -35,6 +36,8 @@ def checked_event(event: Event, robots: Collection[str], scenarios: Collection[s
             raise InputError("step", ticks, f"1 to {MOST_TICKS} ticks")
         case SetSpeed(value) if not SLOWEST <= value <= 1.0:
             raise InputError("speed", value, f"{SLOWEST:g} to 1")
+        case LookBack(seconds) if not 0.0 <= seconds <= MOST_SECONDS:
+            raise InputError("look back", seconds, f"0 to {MOST_SECONDS:g} s")
         case SelectRobot(name) if name not in robots:
             raise InputError("robot", name, f"one of {', '.join(robots)}")
         case LoadScenario(name) if name not in scenarios:

@@ -13,7 +13,7 @@ from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.status_bar import LARGE_STEP, SMALL_STEP, StatusBar
 from momentum_lab.app.tabs import Tabs
 from momentum_lab.app.widgets import Post
-from momentum_lab.events import Reset, StepOnce
+from momentum_lab.events import Branch, Reset, StepOnce
 
 # Keys that follow each other faster than this come from one that is held down, s.
 _REPEATED = 0.12
@@ -21,6 +21,8 @@ _REPEATED = 0.12
 _HELP = """
 **P** push &nbsp;·&nbsp; **K** play or pause &nbsp;·&nbsp; **J** step 1 ms &nbsp;·&nbsp; **L** step 20 ms
 &nbsp;·&nbsp; **R** stand up again &nbsp;·&nbsp; **1 2 3** tabs &nbsp;·&nbsp; **H** this help
+
+*Look back* shows what was; **B** goes on from the instant you look at, with other gains if you like.
 
 The robot stands on its own; you push it. The controller moves the **CoP** (◆) under the feet to bring the
 **CoM** (●) back. Where the safe border of the feet stops the CoP, the ground cannot give both goals: either the
@@ -42,6 +44,7 @@ def add_keys(client: viser.ClientHandle, post: Post, push: PushPanel, status: St
         ("Play or pause", "K", status.toggle),
         ("Step 1 ms", "J", lambda: post(StepOnce(SMALL_STEP))),
         ("Step 20 ms", "L", lambda: post(StepOnce(LARGE_STEP))),
+        ("Go on from the instant that is looked at", "B", lambda: post(Branch())),
         ("Stand up again", "R", lambda: post(Reset())),
         ("Push tab", "1", lambda: tabs.open(0)),
         ("Control tab", "2", lambda: tabs.open(1)),

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from momentum_lab.app.wire import Fallen, Truth
 from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.events import (
+    ApplyPush,
+    Branch,
     Event,
     LoadScenario,
+    LookBack,
     Pause,
     Play,
     Reset,
@@ -24,9 +29,33 @@ from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
 from momentum_lab.scenario import Scenario, changed, load_scenario
 from momentum_lab.session import Session
+from momentum_lab.timeline import Timeline
 
-# What a session of the app remembers, s of simulated time.
-_MEMORY = 20.0
+MEMORY = 60.0
+"""What a session of the app remembers, s of simulated time."""
+
+# Samples whose memory is made ready before the first tick, and in each idle moment afterwards.
+_AT_ONCE, _IN_PASSING = 2000, 256
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """What a person has chosen for a session: its controller, priority and all gains by name."""
+
+    controller: str
+    priority: float
+    gains: dict[str, float]
+
+    def until(self, other: Chosen) -> list[SessionEvent]:
+        """The events that lead from these choices to others."""
+        events: list[SessionEvent] = []
+        gains = self.gains
+        if other.controller != self.controller:
+            events.append(SelectController(other.controller))
+            gains = _values(controller_entry(other.controller).gains)
+        if other.priority != self.priority:
+            events.append(SetPriority(other.priority))
+        return events + [SetGain(name, value) for name, value in other.gains.items() if value != gains[name]]
 
 
 class Playback:
@@ -50,6 +79,15 @@ class Playback:
         """The last sample; there always is one."""
         return self.session.recording.latest
 
+    @property
+    def shown(self) -> Sample:
+        """The sample that is looked at: the last one, or an earlier one while somebody looks back."""
+        return self.session.recording.before_end(self._behind)
+
+    def prepare(self) -> None:
+        """Use a moment in which nothing has to be done."""
+        self.session.recording.reserve(_IN_PASSING)
+
     def take(self, event: Event) -> None:
         """Do what an event asks for.
 
@@ -60,12 +98,17 @@ class Playback:
             case Play():
                 if self.stopped is not None:
                     raise InputError("play", "a simulation that has stopped", "stand the robot up first")
-                self.playing = True
+                self.playing, self._behind = True, 0
             case Pause():
                 self.playing = False
             case StepOnce(ticks):
                 self.playing = False
-                self.tick(ticks)
+                self._step(ticks)
+            case LookBack(seconds):
+                self.playing = False
+                self._look_back(round(seconds / self.session.scenario.timestep))
+            case Branch():
+                self._branch()
             case SetSpeed(value):
                 self.speed = value
             case SelectRobot(name):
@@ -80,6 +123,7 @@ class Playback:
         for _ in range(count):
             if self.stopped is not None:
                 return
+            self._timeline.note()
             try:
                 self.session.tick()
             except SimulationError as error:
@@ -88,6 +132,27 @@ class Playback:
 
     def truth(self, real_time_factor: float) -> Truth:
         """What is the case now; what waits for the next tick counts as done."""
+        session, chosen = self.session, self._chosen()
+        return Truth(
+            run=self.run,
+            scenario=session.scenario.name,
+            robot=session.scenario.robot,
+            controller=chosen.controller,
+            priority=chosen.priority,
+            gains=chosen.gains,
+            playing=self.playing,
+            speed=self.speed,
+            real_time_factor=real_time_factor,
+            fall=self._fall(),
+            failure=session.last_failure,
+            failures=session.solver_failures,
+            stopped=self.stopped,
+            push=_latest(session.pushes, self.shown.number("time")),
+            behind=self._behind * session.scenario.timestep,
+        )
+
+    def _chosen(self) -> Chosen:
+        """The choices of this moment; those that wait for the next tick count as made."""
         session = self.session
         priority, controller, gains = session.priority, session.controller, _values(session.gains)
         for event in self._waiting:
@@ -98,27 +163,46 @@ class Playback:
                     gains[name] = value
                 case SelectController(name):
                     controller, gains = name, _values(controller_entry(name).gains)
-        return Truth(
-            run=self.run,
-            scenario=session.scenario.name,
-            robot=session.scenario.robot,
-            controller=controller,
-            priority=priority,
-            gains=gains,
-            playing=self.playing,
-            speed=self.speed,
-            real_time_factor=real_time_factor,
-            fall=None if session.fall is None else Fallen(session.fall.time, session.fall.reason),
-            failure=session.last_failure,
-            failures=session.solver_failures,
-            stopped=self.stopped,
-            push=_latest(session.pushes, session.time),
-        )
+        return Chosen(controller, priority, gains)
+
+    def _fall(self) -> Fallen | None:
+        """The fall, unless it is still to come at the instant that is looked at."""
+        fall = self.session.fall
+        if fall is None or fall.time > self.shown.number("time"):
+            return None
+        return Fallen(fall.time, fall.reason)
+
+    def _look_back(self, ticks: int) -> None:
+        """Look at an earlier sample, the oldest that there is if that is too far."""
+        self._behind = min(max(0, ticks), len(self.session.recording) - 1)
+
+    def _step(self, ticks: int) -> None:
+        """Forward through what has been, then through what has not been yet."""
+        through = min(ticks, self._behind)
+        self._behind -= through
+        self.tick(ticks - through)
+
+    def _branch(self) -> None:
+        """Go on from what is looked at with what has been chosen by now; what came after it is forgotten."""
+        if not self._behind:
+            self.playing = self.stopped is None
+            return
+        chosen = self._chosen()
+        # The sample that is looked at is the first of the branch: it is simulated again, under the new choices.
+        self._timeline.go_back(self._behind + 1)
+        self._behind, self.stopped, self.playing = 0, None, True
+        self._waiting.clear()
+        for event in self._chosen().until(chosen):
+            self._pass_on(event)
+        self.tick(1)
 
     def _pass_on(self, event: SessionEvent) -> None:
         self.session.post(event)
         self._waiting.append(event)
+        if isinstance(event, ApplyPush):
+            self._behind = 0  # it acts now, and has to be seen
         if isinstance(event, Reset):
+            self._behind = 0
             self.playing = self.playing or self.stopped is not None
             self.stopped = None
             self.run += 1
@@ -128,9 +212,10 @@ class Playback:
         """A new session, standing; the old one goes on if this one cannot be made."""
         old = getattr(self, "session", None)
         robot = old.robot if old is not None and old.scenario.robot == scenario.robot else None
-        session = Session(scenario, robot, capacity=round(_MEMORY / scenario.timestep))
-        session.recording.reserve()
-        self.session = session
+        session = Session(scenario, robot, capacity=round(MEMORY / scenario.timestep))
+        session.recording.reserve(_AT_ONCE)
+        self.session, self._timeline = session, Timeline(session)
+        self._behind = 0
         self._waiting.clear()
         self.stopped = None
         self.playing = True

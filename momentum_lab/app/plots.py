@@ -49,6 +49,7 @@ class Plots:
         self._next = self._next_rest = -math.inf
         self._history: History | None = None
         self._direction = np.array([1.0, 0.0])
+        self._until = math.inf
         self._places = _plot(
             gui,
             "Points along the push (cm)",
@@ -84,12 +85,18 @@ class Plots:
         """Show what happens along a direction (2,) from now on, the past included."""
         self._direction = direction
 
+    def look_at(self, until: float) -> None:
+        """Let the window end at a time from now on, s; infinity: where the run ends."""
+        if until != self._until:
+            self._until = until
+            self.draw()
+
     def add(self, rows: np.ndarray) -> None:
         """Take new samples (n, width) and draw them when it is time."""
         if self._history is not None:
             self._history.add(rows)
             if self._clock() >= self._next and len(self._history):
-                curves = self._history.curves(self._direction)
+                curves = self._history.curves(self._direction, self._until)
                 self._next = self._clock() + _PERIOD
                 if self._clock() >= self._next_rest or not at_rest(curves):
                     self._draw(curves)
@@ -98,7 +105,7 @@ class Plots:
         """Draw what there is."""
         if self._history is not None and len(self._history):
             self._next = self._clock() + _PERIOD
-            self._draw(self._history.curves(self._direction))
+            self._draw(self._history.curves(self._direction, self._until))
 
     def _draw(self, curves: Curves) -> None:
         self._next_rest = self._clock() + _RESTING

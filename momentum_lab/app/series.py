@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections import deque
+import math
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,12 @@ from momentum_lab.robot.model import RobotModel
 WINDOW = 8.0
 """How much simulated time the plots show, s."""
 
+KEPT = 60.0
+"""How much of it can be looked back at, s."""
+
 _CENTIMETRES = 100.0
+# Times are sums of time steps, s.
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +49,7 @@ class Curves:
 
 
 class History:
-    """The samples of the plots: the last seconds of one run.
+    """The samples of the plots: the last minute of one run.
 
     Args:
         robot: the robot.
@@ -53,41 +59,52 @@ class History:
     def __init__(self, robot: RobotModel, layout: Layout) -> None:
         self._robot, self._layout = robot, layout
         self._slices = layout.slices
-        self._rows: deque[np.ndarray] = deque()
+        self._times: list[float] = []
+        self._rows: list[np.ndarray] = []
         # Polygons and where they end are worked out once per sample: ten drawings a second show it in turn.
-        self._polygons: deque[np.ndarray] = deque()
-        self._extents: deque[tuple[float, float]] = deque()
+        self._polygons: list[np.ndarray] = []
+        self._extents: list[tuple[float, float] | None] = []
         self._direction = np.array([1.0, 0.0])
 
     def __len__(self) -> int:
         return len(self._rows)
 
     def add(self, rows: np.ndarray) -> None:
-        """More samples (n, width), oldest first; those out of the window are forgotten."""
+        """More samples (n, width), oldest first.
+
+        Those too old to be looked back at are forgotten, and those that a sample of an earlier time replaces.
+        """
         at = self._slices["time"].start
         for row in rows:
+            self._keep(0, bisect_left(self._times, row[at]))
             polygon = polygon_of(Sample(self._layout, self._slices, row), self._robot)
+            self._times.append(float(row[at]))
             self._rows.append(row)
             self._polygons.append(polygon)
-            self._extents.append(extent(polygon, self._direction))
-        while self._rows and self._rows[-1][at] - self._rows[0][at] >= WINDOW:
-            for kept in (self._rows, self._polygons, self._extents):
-                kept.popleft()
+            self._extents.append(None)
+        if self._times:
+            self._keep(bisect_right(self._times, self._times[-1] - KEPT), len(self._times))
 
     def clear(self) -> None:
         """Forget everything."""
-        for kept in (self._rows, self._polygons, self._extents):
-            kept.clear()
+        self._keep(0, 0)
 
-    def curves(self, direction: np.ndarray) -> Curves:
-        """What has happened along a direction (2,) on the ground, of unit length."""
-        rows = np.array(self._rows)
+    def curves(self, direction: np.ndarray, until: float = math.inf) -> Curves:
+        """What has happened in one window.
+
+        Args:
+            direction: along which (2,), on the ground, of unit length.
+            until: end of the window, s; the first sample is shown even if it is later.
+        """
+        end = max(1, bisect_right(self._times, until + _ROUNDING))
+        window = slice(bisect_right(self._times, self._times[end - 1] - WINDOW), end)
+        rows = np.array(self._rows[window])
         column = {
             name: rows[:, at].reshape(len(rows), *self._layout.shapes[name])
             for name, at in self._slices.items()
         }
         along, across = np.append(direction, 0.0), np.array([-direction[1], direction[0], 0.0])
-        limits = self._limits(direction)
+        limits = self._limits(direction, window)
         origin = float(np.nanmean(limits[0])) if np.isfinite(limits[0]).any() else 0.0
         places = {
             "com": column["com"][:, :2],
@@ -107,9 +124,18 @@ class History:
             pushed=(np.abs(column["push_wrench"]).max(axis=1) > 0.0).astype(float),
         )
 
-    def _limits(self, direction: np.ndarray) -> np.ndarray:
-        """Where the support ends along a direction, sample by sample (n, 2), m."""
+    def _limits(self, direction: np.ndarray, window: slice) -> np.ndarray:
+        """Where the support ends along a direction, for the samples of a window (n, 2), m."""
         if not np.array_equal(direction, self._direction):
             self._direction = np.array(direction)
-            self._extents = deque(extent(polygon, direction) for polygon in self._polygons)
-        return np.array(self._extents)
+            self._extents = [None] * len(self._extents)
+        self._extents[window] = [
+            extent(polygon, direction) if known is None else known
+            for known, polygon in zip(self._extents[window], self._polygons[window], strict=True)
+        ]
+        return np.array(self._extents[window])
+
+    def _keep(self, start: int, end: int) -> None:
+        """Forget all samples but those from one number to another."""
+        for kept in (self._times, self._rows, self._polygons, self._extents):
+            del kept[end:], kept[:start]

@@ -9,9 +9,10 @@ from collections.abc import Callable
 import viser
 
 from momentum_lab.app import html
-from momentum_lab.app.widgets import Post
+from momentum_lab.app.series import KEPT
+from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
-from momentum_lab.events import Pause, Play, Reset, SetSpeed, StepOnce
+from momentum_lab.events import Branch, LookBack, Pause, Play, Reset, SetSpeed, StepOnce
 from momentum_lab.status import Status
 
 INVITATION = "Push the robot: press P or the button."
@@ -22,6 +23,8 @@ _DIRECTIONS = {0: "forward", 90: "to the left", 180: "backward", 270: "to the ri
 # A status that says more than "standing" stays readable for this long, s.
 _READABLE = 0.9
 _PASSING = frozenset({"border", "lifted", "solver"})
+# How far the slider reaches back: to the next of these behind the start of the run, s.
+_REACHES = (5.0, 10.0, 20.0, 40.0, KEPT)
 # How often the figures change, s.
 _PERIOD = 0.1
 
@@ -51,8 +54,25 @@ class StatusBar:
         )
         self._buttons = gui.add_button_group("time", _buttons(playing=True))
         speeds = gui.add_button_group("speed", tuple(_SPEEDS))
+        self._look_back: Bound[float] = Bound(
+            gui.add_slider(
+                "look back (s)",
+                -_REACHES[0],
+                0.0,
+                0.01,
+                0.0,
+                hint="Stops time and shows what was. Play goes on from the end, the button below from there.",
+            ),
+            lambda seconds: LookBack(max(0.0, -seconds)),
+            post,
+            clock,
+        )
+        self._branch = gui.add_button(
+            "Go on from here  (B)", color=(0, 114, 178), icon=viser.Icon.GIT_BRANCH, visible=False
+        )
         self._stand_up.on_click(lambda _: post(Reset()))
         self._buttons.on_click(lambda event: self._pressed(event.target.value))
+        self._branch.on_click(lambda _: post(Branch()))
         speeds.on_click(lambda event: post(SetSpeed(_SPEEDS.get(event.target.value, 1.0))))
 
     def toggle(self) -> None:
@@ -71,6 +91,11 @@ class StatusBar:
             self._playing = truth.playing
             self._buttons.options = _buttons(truth.playing)
             self._next = -math.inf
+        reach = next((reach for reach in _REACHES if simulated + truth.behind <= reach), KEPT)
+        if self._look_back.handle.min != -reach:
+            self._look_back.handle.min = -reach
+        self._look_back.follow(-truth.behind)
+        self._branch.visible = truth.behind > 0.0
         now = self._clock()
         if now < self._next and truth.playing:
             return
@@ -80,7 +105,9 @@ class StatusBar:
         self._simulated = simulated
         status = self._readable(status, now, truth.playing)
         self._write("status", self._status, html.status_line(status.kind, status.words, status.color))
-        line = html.time_line(simulated, truth.real_time_factor, truth.speed, truth.playing, truth.failures)
+        line = html.time_line(
+            simulated, truth.real_time_factor, truth.speed, truth.playing, truth.failures, truth.behind
+        )
         self._write("time", self._time, line)
         down = truth.fall is not None or truth.stopped is not None
         self._write("sentence", self._sentence, html.sentence(_sentence(truth)))

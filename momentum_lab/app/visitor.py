@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import traceback
 from dataclasses import dataclass
@@ -187,6 +188,7 @@ class Visitor:
         if truth.push is not None:
             panels.plots.along(truth.push.direction[:2])
         panels.plots.add(rows_of(frame.history, loaded.layout.width))
+        panels.plots.look_at(sample.number("time") if truth.behind else math.inf)
         if not truth.playing:
             panels.plots.draw()  # nothing comes later that could show the last samples
         for notice in frame.notices:

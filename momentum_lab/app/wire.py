@@ -42,6 +42,7 @@ class Truth(msgspec.Struct, frozen=True):
         failures: how many solves have failed since the robot stood up.
         stopped: why the simulation cannot go on; None while it can.
         push: the latest push that has begun; None before the first.
+        behind: how long before the present end of the run the sample is that is looked at, s.
     """
 
     run: int
@@ -58,6 +59,7 @@ class Truth(msgspec.Struct, frozen=True):
     failures: int
     stopped: str | None
     push: Push | None
+    behind: float = 0.0
 
 
 class Frame(msgspec.Struct, frozen=True):

@@ -145,7 +145,7 @@ class Worker:
         frame = Frame(
             truth=self._playback.truth(self._pacer.real_time_factor(now)),
             late_ticks=self._pacer.late_ticks,
-            row=self._playback.latest.row.tobytes(),
+            row=self._playback.shown.row.tobytes(),
             history=b"".join(row.tobytes() for row in self._history),
             notices=tuple(self._notices),
         )
@@ -159,7 +159,10 @@ class Worker:
         """How long nothing has to be done, s; an event ends it early."""
         if self._playback.playing:
             wait = self._pacer.wait(now)
-            return 0.0 if wait == 0.0 else max(wait, _SHORT)
+            if wait == 0.0:
+                return 0.0
+            self._playback.prepare()
+            return max(wait, _SHORT)
         if self._news and self._taken:
             return max(0.0, self._next_frame - now)
         return _LONG

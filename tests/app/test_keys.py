@@ -48,7 +48,7 @@ def test_what_each_key_does(desk):
 def test_no_key_is_used_twice_and_none_that_widgets_need(desk):
     hotkeys = [hotkey for hotkey, _ in desk.commands.values() if hotkey]
     assert len(set(hotkeys)) == len(hotkeys)
-    assert set(hotkeys) == set("PKJLR123H")
+    assert set(hotkeys) == set("PKJLRB123H")
 
 
 def test_a_key_that_is_held_down_acts_once(desk, monkeypatch):

@@ -9,10 +9,13 @@ from momentum_lab.app.playback import Playback
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.events import (
     ApplyPush,
+    Branch,
     LoadScenario,
+    LookBack,
     Pause,
     Play,
     Reset,
+    SelectController,
     SelectRobot,
     SetGain,
     SetPriority,
@@ -149,3 +152,70 @@ def test_a_simulation_that_cannot_go_on_says_so_and_keeps_its_recording(playback
     assert truth(playback).stopped is None
     assert truth(playback).playing
     assert np.isfinite(playback.latest.row[:50]).all()
+
+
+@pytest.fixture
+def fallen() -> Playback:
+    """A robot that was pushed far too hard at 0.1 s."""
+    playback = Playback(Scenario("s", robot="g1", pushes=(Push(force=500.0, start=0.1),)))
+    while truth(playback).fall is None:
+        playback.tick(50)
+    return playback
+
+
+def test_looking_back_shows_what_was_and_stops_time(fallen):
+    end = fallen.latest.number("time")
+    fallen.take(LookBack(end - 0.05))
+    now = truth(fallen)
+    assert fallen.shown.number("time") == pytest.approx(0.05)
+    assert fallen.latest.number("time") == end
+    assert (now.playing, now.fall, now.push) == (False, None, None)
+    assert now.behind == pytest.approx(end - 0.05)
+    fallen.take(StepOnce(60))
+    assert fallen.shown.number("time") == pytest.approx(0.11)
+    assert truth(fallen).push is not None
+    fallen.take(LookBack(1e3))
+    assert fallen.shown.number("time") == 0.0
+    fallen.take(Play())
+    assert fallen.shown.number("time") == end
+    assert truth(fallen).fall is not None
+
+
+def test_a_branch_goes_on_from_there_with_what_was_chosen_meanwhile(fallen):
+    end, rows = fallen.latest.number("time"), fallen.session.recording.rows().copy()
+    fallen.take(LookBack(end - 0.05))
+    fallen.take(SelectController("slack-qp"))
+    fallen.take(SetGain("com_damping", 12.0))
+    fallen.take(SetPriority(0.5))
+    fallen.take(Branch())
+    now = truth(fallen)
+    assert fallen.shown.number("time") == fallen.latest.number("time") == pytest.approx(0.05)
+    assert (now.playing, now.fall, now.behind) == (True, None, 0.0)
+    assert (now.controller, now.priority, now.gains["com_damping"]) == ("slack-qp", 0.5, 12.0)
+    assert np.array_equal(fallen.session.recording.rows()[:50], rows[:50])
+    assert [entry.tick for entry in fallen.session.log] == [50, 50, 50]
+    fallen.tick(1)
+    assert fallen.session.controller == "slack-qp"
+
+
+def test_an_unchanged_branch_repeats_what_was(fallen):
+    rows = fallen.session.recording.rows().copy()
+    fallen.take(LookBack(fallen.latest.number("time") - 0.123))
+    fallen.take(Branch())
+    fallen.tick(len(rows) - len(fallen.session.recording))
+    assert np.array_equal(fallen.session.recording.rows(), rows, equal_nan=True)
+
+
+def test_a_branch_from_the_very_beginning(fallen):
+    fallen.take(LookBack(1e3))
+    fallen.take(Branch())
+    assert fallen.latest.number("time") == 0.0
+    assert len(fallen.session.recording) == 1
+
+
+def test_a_branch_at_the_end_just_goes_on(playback):
+    playback.tick(10)
+    playback.take(Pause())
+    playback.take(Branch())
+    assert truth(playback).playing
+    assert playback.session.ticks == 11

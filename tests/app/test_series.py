@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from momentum_lab.app.series import WINDOW, History
+from momentum_lab.app.series import KEPT, WINDOW, History
 from momentum_lab.app.support_now import extent
 from tests.conftest import assert_close
 from tests.runs import PUSH_END, PUSH_START
@@ -59,19 +59,41 @@ def test_a_fall_forward_turns_about_the_axis_across(history):
     assert curves.angular_momentum[np.argmin(np.abs(curves.time - 0.4))] > 1.0
 
 
-def test_only_the_window_is_kept(talos, pushed):
+@pytest.fixture
+def long_history(talos, pushed) -> History:
+    """More than a minute of the same sample."""
     history = History(talos, pushed.recording.layout)
-    row = pushed.recording.rows()[0]
-    at = pushed.recording.slices["time"].start
-    for time in np.arange(0.0, 30.0, 0.02):
-        moved = row.copy()
-        moved[at] = time
-        history.add(moved[None])
-    times = history.curves(FORWARD).time
-    assert times[-1] - times[0] < WINDOW
-    assert len(history) == pytest.approx(WINDOW / 0.02, abs=2)
-    history.clear()
-    assert len(history) == 0
+    for time in np.arange(0.0, 70.0, 0.02):
+        history.add(_at(pushed, time))
+    return history
+
+
+def _at(pushed, time: float) -> np.ndarray:
+    row = pushed.recording.rows()[0].copy()
+    row[pushed.recording.slices["time"].start] = time
+    return row[None]
+
+
+def test_only_the_window_is_shown_and_a_minute_kept(long_history):
+    times = long_history.curves(FORWARD).time
+    assert times[-1] == pytest.approx(69.98)
+    assert times[-1] - times[0] == pytest.approx(KEPT, WINDOW, abs=0.03)
+    assert len(long_history) == pytest.approx(KEPT / 0.02, abs=2)
+    long_history.clear()
+    assert len(long_history) == 0
+
+
+def test_looking_back_the_window_ends_there(long_history):
+    times = long_history.curves(FORWARD, until=30.0).time
+    assert times[-1] == pytest.approx(30.0)
+    assert times[-1] - times[0] == pytest.approx(KEPT, WINDOW, abs=0.03)
+    assert long_history.curves(FORWARD, until=1.0).time[-1] == pytest.approx(10.0, abs=0.03)  # the oldest
+
+
+def test_a_branch_replaces_what_came_after_it(pushed, long_history):
+    long_history.add(_at(pushed, 40.013))
+    times = long_history.curves(FORWARD).time
+    assert times[-2:] == pytest.approx([40.0, 40.013])
 
 
 def test_extent_of_a_rectangle_along_its_diagonal():

@@ -10,7 +10,7 @@ import pytest
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.status_bar import INVITATION, StatusBar
 from momentum_lab.app.wire import Fallen
-from momentum_lab.events import Pause, Play, Reset, SetSpeed, StepOnce
+from momentum_lab.events import Branch, LookBack, Pause, Play, Reset, SetSpeed, StepOnce
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
 from momentum_lab.status import Status
@@ -132,3 +132,31 @@ def test_figures_change_ten_times_a_second(bar):
 def test_the_end_of_the_process_is_told(bar):
     bar.bar.end()
     assert "the simulation has ended: reload the page" in bar.text
+
+
+def test_looking_back(bar):
+    """The slider asks for an instant; the button to go on from there is there while there is one."""
+    slider, branch = bar.gui.widgets["look back (s)"], bar.gui.widgets["Go on from here  (B)"]
+    bar.show(STANDING)
+    assert not branch.visible
+    slider.set_by_person(-1.25)
+    assert bar.posted == [LookBack(1.25)]
+    assert "1.25 s before the end" in bar.show(STANDING, seconds=1.0, behind=1.25, playing=False)
+    assert branch.visible
+    branch.set_by_person(True)
+    assert bar.posted[-1] == Branch()
+    bar.show(STANDING, seconds=1.0, behind=0.0, playing=True)
+    assert slider.value == 0.0
+    assert not branch.visible
+
+
+def test_the_slider_reaches_as_far_back_as_there_is(bar):
+    slider = bar.gui.widgets["look back (s)"]
+    bar.show(STANDING, seconds=4.0)
+    assert slider.min == -5.0
+    bar.show(STANDING, seconds=3.0)
+    assert slider.min == -10.0
+    bar.show(STANDING, seconds=0.0, behind=4.0)
+    assert slider.min == -20.0
+    bar.show(STANDING, seconds=200.0, behind=0.0)
+    assert slider.min == -60.0

@@ -32,6 +32,8 @@ EVENTS = [
     events.SetSpeed(0.5),
     events.SelectRobot("g1"),
     events.LoadScenario("stand"),
+    events.LookBack(1.5),
+    events.Branch(),
 ]
 
 

@@ -140,6 +140,25 @@ def test_paused_at_the_moment_that_teaches(served: Served, open_page: Opener) ->
     lab.expect_text("How this lab works")
 
 
+def test_look_back_and_go_on_from_there(served: Served, open_page: Opener) -> None:
+    """A fall is looked back at from its end to before the push, and from there the story goes on without it."""
+    lab = open_page(served.url).until_furnished()
+    lab.slide("force (N)", "End")
+    lab.press("p")
+    lab.expect_status("fallen at [0-9.]+ s: ")
+    lab.slide("look back (s)", "Home")
+    lab.expect_text("s before the end")
+    lab.expect_status("standing")
+    lab.expect_text(re.escape(INVITATION))
+    lab.save(OUTPUT / "looking_back_test.png")
+    lab.press("b")
+    expect(lab.page.get_by_role("button", name="Pause", exact=True)).to_be_visible(timeout=PATIENCE)
+    expect(lab.page.get_by_text("s before the end")).to_have_count(0, timeout=PATIENCE)
+    lab.press("p")
+    lab.expect_text("Last push")
+    lab.expect_status("standing|gives way")
+
+
 def test_on_a_phone(served: Served, open_page: Opener) -> None:
     lab = open_page(served.url, 390, 844).until_furnished()
     pause_in_saturation(lab)
