@@ -24,6 +24,12 @@ class SetPriority(msgspec.Struct, frozen=True, tag=True):
     value: float
 
 
+class SetDirections(msgspec.Struct, frozen=True, tag=True):
+    """Ask for some directions of momentum and leave the others free: `all`, `linear+kz`, `lx+ly` and so on."""
+
+    controlled: str
+
+
 class SelectController(msgspec.Struct, frozen=True, tag=True):
     """Change the controller; its gains start at their defaults."""
 
@@ -85,7 +91,7 @@ class Branch(msgspec.Struct, frozen=True, tag=True):
     """Go on from the instant that is looked at, with the gains, priority and controller of now."""
 
 
-SessionEvent = SetGain | SetPriority | SelectController | ApplyPush | Reset
+SessionEvent = SetGain | SetPriority | SetDirections | SelectController | ApplyPush | Reset
 PlaybackEvent = Play | Pause | StepOnce | SetSpeed | SelectRobot | LoadScenario | LookBack | Branch
 Event = SessionEvent | PlaybackEvent
 

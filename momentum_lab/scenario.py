@@ -9,7 +9,8 @@ from typing import Annotated, Any, Literal, get_args
 
 import msgspec
 
-from momentum_lab.errors import ScenarioError
+from momentum_lab.errors import InputError, ScenarioError
+from momentum_lab.momentum.directions import directions
 from momentum_lab.paths import ASSETS
 from momentum_lab.physics.push import Push, Shape
 
@@ -42,6 +43,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         title: what it shows, in a few words.
         robot: a robot of the catalog, or the path of a robot's TOML file.
         controller: a controller of the registry.
+        controlled: the directions of momentum that are asked for, such as `all` or `linear+kz`.
         stance: the feet the robot stands on; empty: all of them.
         com_outside: how far outside the outer edge of its only stance foot the CoM starts, m; None: the robot
             starts where it is to stand.
@@ -62,6 +64,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     title: str = ""
     robot: str = "talos"
     controller: str = "computed-torque"
+    controlled: str = "all"
     stance: tuple[str, ...] = ()
     com_outside: Annotated[float, msgspec.Meta(ge=-MAX_LEAN, le=MAX_LEAN)] | None = None
     drop_height: Annotated[float, msgspec.Meta(ge=0.0, le=MAX_DROP)] = 0.0
@@ -122,12 +125,17 @@ def _converted(data: dict[str, Any], where: str = "") -> Scenario:
     """Plain data as a scenario, or an error that names the field and `where` it is."""
     _check_finite(data, where)
     try:
-        return msgspec.convert(data, Scenario)
+        scenario = msgspec.convert(data, Scenario)
     except msgspec.ValidationError as error:
         rule, _, place = str(error).partition(" - at ")
         field = place.strip("`").removeprefix("$").removeprefix(".").removesuffix("[...]")
         given, allowed = _explained(rule, field, data)
         raise ScenarioError((field or "scenario") + where, given, allowed) from error
+    try:
+        directions(scenario.controlled)
+    except InputError as error:
+        raise ScenarioError("controlled" + where, scenario.controlled, error.allowed) from error
+    return scenario
 
 
 def _explained(rule: str, field: str, data: Any) -> tuple[object, str]:

@@ -24,9 +24,11 @@ from momentum_lab.events import (
     Reset,
     SelectController,
     SessionEvent,
+    SetDirections,
     SetGain,
     SetPriority,
 )
+from momentum_lab.momentum.directions import Directions, directions
 from momentum_lab.observe import Tick, observe
 from momentum_lab.physics.ground import Ground
 from momentum_lab.physics.push import Push
@@ -83,6 +85,7 @@ class Session:
     state: State
     pushes: tuple[Push, ...]
     priority: float
+    controlled: Directions
     controller: str
     gains: Any
     fall: Fall | None
@@ -113,6 +116,7 @@ class Session:
         self._scripted = tuple(self._checked_push(push) for push in scenario.pushes)
         self.recording = Recording(Layout.of(self.robot), capacity or self.scenario_ticks)
         self.priority = scenario.priority
+        self.controlled = directions(scenario.controlled)
         self.log: list[LoggedEvent] = []
         self.ticks = 0
         self._inbox: deque[SessionEvent] = deque()
@@ -183,7 +187,7 @@ class Session:
         """The controller's answer; a robot that has fallen goes limp."""
         if self.fall is not None:
             return limp(self.robot, dynamics, self._memory)
-        reference = self._goal.reference(dynamics)
+        reference = self._goal.reference(dynamics, self.controlled)
         output = self._controller.compute(dynamics, reference, self.gains, self.priority, self._memory)
         if output.failure is not None:
             self.solver_failures += 1
@@ -239,6 +243,8 @@ class Session:
                 with_gains(controller_entry(self._controller_to_be()).gains, {name: value})
             case SetPriority(value):
                 _checked_priority(value)
+            case SetDirections(text):
+                directions(text)
             case SelectController(name):
                 controller_entry(name)
             case ApplyPush(push):
@@ -255,6 +261,9 @@ class Session:
                 self.gains = with_gains(self.gains, {name: value})
             case SetPriority(value):
                 self.priority = _checked_priority(value)
+            case SetDirections(text):
+                self.controlled = directions(text)
+                self._taken_over = True
             case SelectController(name):
                 self._select(name)
                 self._memory = self._controller.initial_memory(self.dynamics)

@@ -27,6 +27,7 @@ from momentum_lab.cli.arguments import parsed
 from momentum_lab.cli.choices import chosen_scenario
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import SimulationError
+from momentum_lab.experiments.figures import FIGURES
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import load_trace
 from momentum_lab.robot.catalog import robot_names
@@ -92,6 +93,10 @@ BAD_VALUES = [
     ("run stand --seconds inf", "--seconds: got inf; allowed: a number from 0.001 to 3600 (s)"),
     ("run stand --seed -1", "--seed: got -1; allowed: a whole number from 0 to 4294967295"),
     ("run stand --seed 1.5", "--seed: got 1.5; allowed: a whole number from 0 to 4294967295"),
+    (
+        "run stand --controlled up",
+        "--controlled: got up; allowed: all, linear, angular, none, lx, ly, lz, kx, ky, kz, several joined by +",
+    ),
     ("run stand --engine mujoco", "--engine: got mujoco; allowed: one of pinocchio"),
     ("run stand --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
     (
@@ -116,8 +121,8 @@ BAD_VALUES = [
     ("app --port http", "--port: got http; allowed: a whole number from 0 to 65535"),
     ("--port -1", "--port: got -1; allowed: a whole number from 0 to 65535"),
     ("bench --seconds 0", "--seconds: got 0; allowed: a number from 1 to 600 (s)"),
-    ("list", "list: got nothing; allowed: robots, controllers, scenarios, lessons, gains"),
-    ("list cats", "list: got cats; allowed: robots, controllers, scenarios, lessons, gains"),
+    ("list", "list: got nothing; allowed: robots, controllers, scenarios, lessons, figures, gains"),
+    ("list cats", "list: got cats; allowed: robots, controllers, scenarios, lessons, figures, gains"),
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
     ("fly", "command: got fly; allowed: app, run, figure, list, equations, bench"),
 ]
@@ -365,7 +370,12 @@ def test_recording_larger_than_memory_is_one_line(capsys: Output, monkeypatch: p
 
 @pytest.mark.parametrize(
     ("kind", "names"),
-    [("robots", robot_names()), ("scenarios", scenario_names()), ("controllers", list(CONTROLLERS))],
+    [
+        ("robots", robot_names()),
+        ("scenarios", scenario_names()),
+        ("controllers", list(CONTROLLERS)),
+        ("figures", list(FIGURES)),
+    ],
 )
 def test_list_gives_the_names(kind: str, names: list[str], capsys: Output) -> None:
     assert main(["list", kind, "--json"]) == 0

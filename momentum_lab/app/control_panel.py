@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,8 +13,24 @@ from momentum_lab.app.widgets import Bound, Post, nice_step
 from momentum_lab.app.wire import Truth
 from momentum_lab.control.gains import GainInfo, declared_gains
 from momentum_lab.control.registry import CONTROLLERS
-from momentum_lab.events import LoadScenario, SelectController, SelectRobot, SetGain, SetPriority
+from momentum_lab.events import (
+    LoadScenario,
+    SelectController,
+    SelectRobot,
+    SetDirections,
+    SetGain,
+    SetPriority,
+)
+from momentum_lab.momentum.directions import directions, text_of
 
+_DIRECTIONS = (
+    "linear, forward (l x)",
+    "linear, left (l y)",
+    "linear, up (l z)",
+    "angular, about forward (k x)",
+    "angular, about left (k y)",
+    "angular, about up (k z)",
+)
 # Viser breaks labels after a slash; this one it does not know.
 _TYPOGRAPHY = str.maketrans("/", "∕")
 
@@ -73,6 +89,7 @@ class ControlPanel:
             post,
         )
         gui.add_html(html.slider_ends("hold the CoM", "hold the posture"))
+        self._directions = _Directions(gui, post, truth)
         self._gains: _GainPanel = _GainPanel(gui, post, truth)
 
     def follow(self, truth: Truth) -> None:
@@ -82,10 +99,37 @@ class ControlPanel:
         self._scenario.follow(truth.scenario)
         self._controller.follow(truth.controller)
         self._priority.follow(truth.priority)
+        self._directions.follow(truth)
         if truth.controller != self._gains.controller:
             self._gains.remove()
             self._gains = _GainPanel(self._gui, self._post, truth)
         self._gains.follow(truth)
+
+
+class _Directions:
+    """Six ticks: which directions of momentum are asked for, and which may become what they like."""
+
+    def __init__(self, gui: viser.GuiApi, post: Post, truth: Truth) -> None:
+        self._chosen = list(directions(truth.controlled))
+        with gui.add_folder("Directions asked for", expand_by_default=False):
+            gui.add_html(html.sentence("A direction without a tick is left to posture and feet."))
+            self._boxes: list[Bound[bool]] = [
+                Bound(gui.add_checkbox(words, chosen), self._setter(i), post)
+                for i, (words, chosen) in enumerate(zip(_DIRECTIONS, self._chosen, strict=True))
+            ]
+
+    def follow(self, truth: Truth) -> None:
+        self._chosen = list(directions(truth.controlled))
+        for box, chosen in zip(self._boxes, self._chosen, strict=True):
+            box.follow(chosen)
+
+    def _setter(self, i: int) -> Callable[[bool], SetDirections]:
+        def event(on: bool) -> SetDirections:
+            self._chosen[i] = on
+            lx, ly, lz, kx, ky, kz = self._chosen
+            return SetDirections(text_of((lx, ly, lz, kx, ky, kz)))
+
+        return event
 
 
 class _GainPanel:

@@ -20,11 +20,13 @@ from momentum_lab.events import (
     SelectController,
     SelectRobot,
     SessionEvent,
+    SetDirections,
     SetGain,
     SetPriority,
     SetSpeed,
     StepOnce,
 )
+from momentum_lab.momentum.directions import directions, text_of
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
 from momentum_lab.scenario import Scenario, changed, load_scenario
@@ -40,10 +42,11 @@ _AT_ONCE, _IN_PASSING = 2000, 256
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """What a person has chosen for a session: its controller, priority and all gains by name."""
+    """What a person has chosen for a session: controller, priority, directions, and all gains by name."""
 
     controller: str
     priority: float
+    controlled: str
     gains: dict[str, float]
 
     def until(self, other: Chosen) -> list[SessionEvent]:
@@ -55,6 +58,8 @@ class Chosen:
             gains = _values(controller_entry(other.controller).gains)
         if other.priority != self.priority:
             events.append(SetPriority(other.priority))
+        if other.controlled != self.controlled:
+            events.append(SetDirections(other.controlled))
         return events + [SetGain(name, value) for name, value in other.gains.items() if value != gains[name]]
 
 
@@ -139,6 +144,7 @@ class Playback:
             robot=session.scenario.robot,
             controller=chosen.controller,
             priority=chosen.priority,
+            controlled=chosen.controlled,
             gains=chosen.gains,
             playing=self.playing,
             speed=self.speed,
@@ -154,16 +160,19 @@ class Playback:
     def _chosen(self) -> Chosen:
         """The choices of this moment; those that wait for the next tick count as made."""
         session = self.session
-        priority, controller, gains = session.priority, session.controller, _values(session.gains)
+        priority, controlled = session.priority, text_of(session.controlled)
+        controller, gains = session.controller, _values(session.gains)
         for event in self._waiting:
             match event:
                 case SetPriority(value):
                     priority = value
+                case SetDirections(text):
+                    controlled = text_of(directions(text))
                 case SetGain(name, value):
                     gains[name] = value
                 case SelectController(name):
                     controller, gains = name, _values(controller_entry(name).gains)
-        return Chosen(controller, priority, gains)
+        return Chosen(controller, priority, controlled, gains)
 
     def _fall(self) -> Fallen | None:
         """The fall, unless it is still to come at the instant that is looked at."""
@@ -232,6 +241,7 @@ class Playback:
             robot=name,
             controller=truth.controller,
             priority=truth.priority,
+            controlled=truth.controlled,
             gains=gains,
         )
 

@@ -10,7 +10,7 @@ from typing import Any, Generic, TypeVar
 from momentum_lab.events import Event
 
 Post = Callable[[Event], None]
-Value = TypeVar("Value", float, str)
+Value = TypeVar("Value", bool, float, str)
 
 # How long a widget that was touched keeps what the hand gave it, s: longer than an event needs to come back.
 _HANDS_OFF = 0.7

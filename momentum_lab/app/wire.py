@@ -33,6 +33,7 @@ class Truth(msgspec.Struct, frozen=True):
         robot: name of the robot, or the path of its file.
         controller: name of the controller.
         priority: from 0 to 1.
+        controlled: the directions of momentum that are asked for, in the shortest words.
         gains: all gains of the controller.
         playing: whether simulated time runs.
         speed: the fraction of real time it is asked to run at.
@@ -50,6 +51,7 @@ class Truth(msgspec.Struct, frozen=True):
     robot: str
     controller: str
     priority: float
+    controlled: str
     gains: dict[str, float]
     playing: bool
     speed: float

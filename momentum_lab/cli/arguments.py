@@ -10,11 +10,12 @@ from typing import Any, NoReturn
 
 from momentum_lab import __version__
 from momentum_lab.errors import InputError
+from momentum_lab.momentum.directions import directions
 from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
 from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 
 COMMANDS = ("app", "run", "figure", "list", "equations", "bench")
-KINDS = ("robots", "controllers", "scenarios", "lessons", "gains")
+KINDS = ("robots", "controllers", "scenarios", "lessons", "figures", "gains")
 _MAX_PORT = 65535
 _MAX_BENCH_SECONDS, _MAX_BENCH_MINUTES = 600.0, 60.0
 _ABOVE_ZERO = math.ulp(0.0)
@@ -106,6 +107,14 @@ def _gain_setting(text: str) -> tuple[str, str]:
     return name, value
 
 
+def _directions(text: str) -> str:
+    try:
+        directions(text)
+    except InputError as error:
+        raise InputError("--controlled", text, error.allowed) from error
+    return text
+
+
 def _with_negative_numbers(words: list[str]) -> list[str]:
     """`--push -inf` as `--push=-inf`: argparse takes most negative numbers for options."""
     joined: list[str] = []
@@ -132,7 +141,7 @@ def _parser() -> _Parser:
             "one of the chapter's figures: picture, numbers, and claims that are checked",
             _figure_arguments,
         ),
-        ("list", "what there is: robots, controllers, scenarios, lessons, gains", _list_arguments),
+        ("list", "what there is: robots, controllers, scenarios, lessons, figures, gains", _list_arguments),
         ("equations", "how exactly the chapter's equations hold on a robot", _equations_arguments),
         ("bench", "how fast the lab is on this machine", _bench_arguments),
     ):
@@ -223,6 +232,12 @@ def _push_arguments(parser: _Parser) -> None:
 def _choice_arguments(parser: _Parser) -> None:
     parser.add_argument("--robot", metavar="R", help="a name, or a robot's .toml file")
     parser.add_argument("--controller", metavar="C", help="who keeps the balance")
+    parser.add_argument(
+        "--controlled",
+        metavar="D",
+        type=_directions,
+        help="directions of momentum that are asked for: all, linear+kz, lx+ly, ...",
+    )
 
 
 def _figure_arguments(parser: _Parser) -> None:

@@ -63,6 +63,13 @@ def lessons() -> Things:
     return [{"name": path.stem, "title": _title(path.read_text())} for path in sorted(LESSONS.glob("*.py"))]
 
 
+def figures() -> Things:
+    """All figures that can be made, with the scenario of the same name that the app opens."""
+    from momentum_lab.experiments.figures import FIGURES  # takes a second to load
+
+    return [{"name": figure.name, "title": figure.title} for figure in FIGURES.values()]
+
+
 def gains(controller: str) -> Things:
     """All gains of a controller, in the order of their declaration.
 
@@ -86,6 +93,7 @@ _LISTS: dict[str, Callable[[], Things]] = {
     "controllers": controllers,
     "scenarios": scenarios,
     "lessons": lessons,
+    "figures": figures,
 }
 
 

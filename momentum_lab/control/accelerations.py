@@ -11,6 +11,7 @@ from momentum_lab.control.acceleration_terms import BEFORE_THE_STOP, acceleratio
 from momentum_lab.control.controller import Reference
 from momentum_lab.control.foot_forces import FootForces
 from momentum_lab.control.qp import QuadraticProgram, solve
+from momentum_lab.momentum.centroidal import momentum_rate
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -83,12 +84,65 @@ class AccelerationProgram:
         Raises:
             SolverError: no acceleration keeps the feet still.
         """
-        robot, state = self.robot, dynamics.state
-        program = acceleration_program(
-            state.q,
-            state.v,
+        program = self._program(
+            dynamics,
             dynamics.centroidal_map,
             feet.momentum_rate - dynamics.centroidal_bias,
+            feet.wrench,
+            reference,
+            weights,
+        )
+        return solve(QuadraticProgram(*program, self._labels, self._soft)).x
+
+    def rate_with_free_directions(
+        self, dynamics: Dynamics, desired: np.ndarray, reference: Reference, weights: MotionWeights
+    ) -> np.ndarray:
+        """The desired momentum rate with what posture and pelvis bring about in directions not asked for.
+
+        dh = A_G a + dA_G v with the a of Eq. 34 when only the rows of the controlled directions count, the feet
+        stay still, and the ground gives all: no bound presses, so it is one linear system.
+
+        Args:
+            dynamics: the state with everything computed.
+            desired: dh_d (6,), N and N m, of which the controlled directions count.
+            reference: the posture, the pelvis axes, the height of the ground, the controlled directions.
+            weights: what matters how much.
+
+        Returns:
+            The rate (6,), N and N m: dh_d in the controlled directions.
+        """
+        asked = np.array(reference.controlled)
+        hessian, gradient, matrix, lower, _ = self._program(
+            dynamics,
+            dynamics.centroidal_map * asked[:, None],
+            (desired - dynamics.centroidal_bias) * asked,
+            np.zeros((len(self.robot.soles), 6)),
+            reference,
+            weights,
+        )
+        size, rows = len(gradient), 6 * len(self.stance)
+        still, rest = matrix[:rows], lower[size : size + rows]
+        system = np.zeros((size + rows, size + rows))
+        system[:size, :size], system[size:, :size], system[:size, size:] = hessian, still, still.T
+        acceleration = np.linalg.solve(system, np.concatenate([-gradient, rest]))[:size]
+        return np.where(asked, desired, momentum_rate(dynamics, acceleration))
+
+    def _program(
+        self,
+        dynamics: Dynamics,
+        centroidal_map: np.ndarray,
+        missing_rate: np.ndarray,
+        wrench: np.ndarray,
+        reference: Reference,
+        weights: MotionWeights,
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Eq. 34 as P, c, G, lower and upper bounds: see `acceleration_program`."""
+        robot, state = self.robot, dynamics.state
+        return acceleration_program(
+            state.q,
+            state.v,
+            centroidal_map,
+            missing_rate,
             dynamics.locked_inertia,
             dynamics.mass_matrix,
             dynamics.nonlinear_effects,
@@ -102,7 +156,7 @@ class AccelerationProgram:
             dynamics.sole_position,
             dynamics.sole_rotation,
             reference.sole_height,
-            feet.wrench,
+            wrench,
             reference.posture,
             self._free_joints,
             robot.position_lower,
@@ -118,7 +172,6 @@ class AccelerationProgram:
             weights.joint_limit_rate,
             BEFORE_THE_STOP,
         )
-        return solve(QuadraticProgram(*program, self._labels, self._soft)).x
 
 
 def contact_constraint(

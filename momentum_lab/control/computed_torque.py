@@ -16,6 +16,7 @@ from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds, S
 from momentum_lab.control.gains import gain
 from momentum_lab.control.priority import Compromise, compromise
 from momentum_lab.errors import SolverError
+from momentum_lab.momentum.directions import ALL
 from momentum_lab.momentum.ground import GRAVITY, cop_from_momentum_rate
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
@@ -110,17 +111,24 @@ class ComputedTorque:
         priority: float,
         memory: JointCommand,
     ) -> ControlOutput:
-        """Torques for one tick (Fig. 6); see `Controller.compute`."""
+        """Torques for one tick (Fig. 6); see `Controller.compute`.
+
+        In directions of momentum that are not asked for (section 5.3.1), what posture and pelvis would bring
+        about takes the place of the desired rate; from there on they are treated like all others, so that foot
+        forces, bounds and torques stay consistent.
+        """
         desired = self._desired_rate(dynamics, reference, gains)
         carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.sole_height)
         if not carrying:
             return self._fallback(dynamics, reference, desired, "no foot is on the ground")
         stance = self.footing.stance_feet(dynamics, carrying, gains.safe_border)
+        program, weights = self._acceleration_program(reference.stance), _weights(gains)
+        if reference.controlled != ALL:
+            desired = program.rate_with_free_directions(dynamics, desired, reference, weights)
         balance = self._balance(dynamics, desired, stance, gains, priority)
         try:
             feet = self._foot_forces(stance, balance, gains)
-            program = self._acceleration_program(reference.stance)
-            acceleration = program.solve(dynamics, feet, reference, _weights(gains))
+            acceleration = program.solve(dynamics, feet, reference, weights)
         except SolverError as error:
             return self._fallback(dynamics, reference, desired, str(error))
         torque = inverse_dynamics(

@@ -10,6 +10,7 @@ import pinocchio as pin
 
 from momentum_lab.control.controller import Reference
 from momentum_lab.control.stance_motion import Affine
+from momentum_lab.momentum.directions import Directions
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -39,6 +40,7 @@ class Output:
         bias: Psi = dJ/dt v (k,).
         desired: y''_d (k,), m/s^2 or rad/s^2.
         weight: of its slack in Eq. 62.
+        parts: what its k components are called, where each of them is told by itself.
     """
 
     name: str
@@ -46,6 +48,7 @@ class Output:
     bias: np.ndarray
     desired: np.ndarray
     weight: float
+    parts: tuple[str, ...] = ()
 
     def slack(self, acceleration: np.ndarray) -> np.ndarray:
         """y''_slack = y''_d - (J a + Psi) (k,): what an acceleration (nv,) leaves undone (Eq. 61)."""
@@ -55,12 +58,55 @@ class Output:
 def com_output(
     mass: float, dynamics: Dynamics, reference: Reference, spring: Spring, weight: float
 ) -> Output:
-    """Position of the CoM; J = A_lin / m."""
+    """Position of the CoM along the axes that are asked for; J = A_lin / m."""
+    axes = [axis for axis in range(3) if reference.controlled[axis]]
     desired = spring.damping * (reference.com_velocity - dynamics.com_velocity)
     desired += spring.stiffness * (reference.com - dynamics.com_in_world)
     return Output(
-        "com", dynamics.centroidal_map[:3] / mass, dynamics.centroidal_bias[:3] / mass, desired, weight
+        "com",
+        dynamics.centroidal_map[axes] / mass,
+        dynamics.centroidal_bias[axes] / mass,
+        desired[axes],
+        weight,
+        tuple(AXES[axis] for axis in axes),
     )
+
+
+def momentum_outputs(
+    mass: float,
+    dynamics: Dynamics,
+    rate: np.ndarray,
+    controlled: Directions,
+    linear_weight: float,
+    angular_weight: float,
+) -> list[Output]:
+    """Linear and angular momentum along the directions that are asked for, as accelerations.
+
+    S dl / m and (S I_G S^T)^-1 S dk, S choosing rows: divided by mass and inertia they weigh alike.
+
+    Args:
+        mass: m, kg.
+        dynamics: the state with everything computed.
+        rate: [dl_d; dk_d] (6,), N and N m.
+        controlled: the directions that are asked for (section 5.3.1).
+        linear_weight: of the linear part.
+        angular_weight: of the angular part.
+    """
+    linear = [i for i in range(3) if controlled[i]]
+    angular = [i for i in range(3) if controlled[3 + i]]
+    spinning = [3 + i for i in angular]
+    turn = np.linalg.inv(dynamics.locked_inertia[np.ix_(angular, angular)])
+    A, bias = dynamics.centroidal_map, dynamics.centroidal_bias
+    return [
+        Output("linear momentum", A[linear] / mass, bias[linear] / mass, rate[linear] / mass, linear_weight),
+        Output(
+            "angular momentum",
+            turn @ A[spinning],
+            turn @ bias[spinning],
+            turn @ rate[spinning],
+            angular_weight,
+        ),
+    ]
 
 
 def pelvis_output(dynamics: Dynamics, reference: Reference, spring: Spring, weight: float) -> Output:
@@ -68,7 +114,7 @@ def pelvis_output(dynamics: Dynamics, reference: Reference, spring: Spring, weig
     jacobian = dynamics.pelvis_jacobian[3:]
     error = pin.log3(reference.pelvis_rotation @ dynamics.pelvis_rotation.T)
     desired = spring.stiffness * error - spring.damping * (jacobian @ dynamics.state.v)
-    return Output("pelvis", jacobian, dynamics.pelvis_bias[3:], desired, weight)
+    return Output("pelvis", jacobian, dynamics.pelvis_bias[3:], desired, weight, AXES)
 
 
 def sole_output(dynamics: Dynamics, foot: int, goal: pin.SE3, spring: Spring, weight: float) -> Output:

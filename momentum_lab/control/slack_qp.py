@@ -12,7 +12,6 @@ from momentum_lab.control.fallback import hold
 from momentum_lab.control.foot_forces import Footing
 from momentum_lab.control.gains import gain
 from momentum_lab.control.outputs import (
-    AXES,
     LiftedSoles,
     Output,
     Spring,
@@ -98,7 +97,8 @@ class SlackQP:
         min sum W_k |y''_d,k - J_k a - Psi_k|^2 (Eq. 62 with the slack of Eq. 61 put in) subject to Eq. 47, the
         CoP bounds of Eq. 52 per foot, friction, f_z >= f_min, and limits of joints and torques. Priority 0
         takes the weights as they are; priority 1 exchanges the CoM's weight with that of everything else;
-        between them it goes evenly on a logarithmic scale.
+        between them it goes evenly on a logarithmic scale. Of the directions of momentum only the linear ones
+        are outputs here (section 5.2 has no angular goal): the CoM is left free along those not asked for.
         """
         carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.sole_height)
         if not carrying:
@@ -184,14 +184,13 @@ def _bounds(gains: SlackGains) -> StanceBounds:
 
 
 def _named_slack(outputs: list[Output], acceleration: np.ndarray) -> dict[str, float]:
-    """Slacks by name: per axis where the output is a vector in space, their length for a posture."""
+    """Slacks by name: per axis where the output's parts have names, their length for a posture."""
     named: dict[str, float] = {}
     for output in outputs:
         slack = output.slack(acceleration)
-        if len(slack) == len(AXES):
-            named |= {
-                f"{output.name} {axis}": value for axis, value in zip(AXES, slack.tolist(), strict=True)
-            }
+        if output.parts:
+            values = zip(output.parts, slack.tolist(), strict=True)
+            named |= {f"{output.name} {part}": value for part, value in values}
         else:
             named[output.name] = float(np.linalg.norm(slack))
     return named

@@ -23,14 +23,10 @@ class StandingGoal:
         robot: the robot.
         home: the standing posture, with everything computed.
         stance: the feet that carry the robot, as indices.
-        controlled: the directions of momentum that are asked for (section 5.3.1).
     """
 
-    def __init__(
-        self, robot: RobotModel, home: Dynamics, stance: tuple[int, ...], controlled: Directions = ALL
-    ) -> None:
+    def __init__(self, robot: RobotModel, home: Dynamics, stance: tuple[int, ...]) -> None:
         self.stance = stance
-        self.controlled = controlled
         self.posture = home.state.q[7:].copy()
         self._centers = np.array([np.append((sole.lower + sole.upper) / 2.0, 0.0) for sole in robot.soles])
         self._share = np.array([(foot in stance) / len(stance) for foot in range(len(robot.soles))])
@@ -40,8 +36,13 @@ class StandingGoal:
         self._still = np.zeros(3)
         self._level = np.zeros(len(robot.soles))
 
-    def reference(self, dynamics: Dynamics) -> Reference:
-        """The goal for a state whose soles are where `dynamics` says, on level ground at height 0."""
+    def reference(self, dynamics: Dynamics, controlled: Directions = ALL) -> Reference:
+        """The goal for a state whose soles are where `dynamics` says, on level ground at height 0.
+
+        Args:
+            dynamics: the state with everything computed.
+            controlled: the directions of momentum that are asked for (section 5.3.1).
+        """
         com, pelvis = standing_goal(
             dynamics.sole_position,
             dynamics.sole_rotation,
@@ -58,7 +59,7 @@ class StandingGoal:
             pelvis_rotation=pelvis,
             stance=self.stance,
             sole_height=self._level,
-            controlled=self.controlled,
+            controlled=controlled,
         )
 
     def _place(self, dynamics: Dynamics) -> tuple[np.ndarray, float]:

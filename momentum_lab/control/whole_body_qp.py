@@ -22,6 +22,7 @@ from momentum_lab.control.outputs import (
     Spring,
     least_squares,
     lightened,
+    momentum_outputs,
     pelvis_output,
     posture_output,
 )
@@ -31,6 +32,7 @@ from momentum_lab.control.stance_motion import Affine, StanceMotion, stance_moti
 from momentum_lab.control.stance_output import stance_output
 from momentum_lab.control.stance_program import StanceBounds, StanceProgram
 from momentum_lab.errors import SolverError
+from momentum_lab.momentum.centroidal import momentum_rate
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -113,7 +115,8 @@ class WholeBodyQP:
         min w_l |dl_d - dl|^2 / m^2 + w_k |I_G^-1 (dk_d - dk)|^2 + posture + pelvis + uneven forces, with
         dh = A_G a + dA_G v, subject to the equations of motion, still feet, wrenches within the cones of the
         safe soles, and limits of torques and joints. The priority is the ratio of w_l and w_k: priority 0
-        keeps linear momentum, priority 1 angular momentum, evenly on a logarithmic scale between.
+        keeps linear momentum, priority 1 angular momentum, evenly on a logarithmic scale between. Directions that
+        are not asked for have no term (section 5.3.1); what is desired there is what comes out.
         """
         carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.sole_height)
         if not carrying:
@@ -129,6 +132,11 @@ class WholeBodyQP:
             x = solve(problem).x
         except SolverError as error:
             return hold(self.robot, dynamics, reference, str(error), memory)
+        if not all(reference.controlled):
+            achieved = momentum_rate(dynamics, motion.acceleration.at(x))
+            desired = np.where(
+                reference.controlled, desired, achieved
+            )  # what is not asked for is as it comes
         return stance_output(self.robot, dynamics, motion, x, carrying, desired, slack={})
 
     def desired_rate(self, dynamics: Dynamics, reference: Reference, gains: WholeBodyGains) -> np.ndarray:
@@ -154,15 +162,12 @@ class WholeBodyQP:
         priority: float,
     ) -> list[Output]:
         """Momentum as accelerations, the more important part first; then what is left free."""
-        A, bias = dynamics.centroidal_map, dynamics.centroidal_bias
-        mass, turn = self.robot.mass, np.linalg.inv(dynamics.locked_inertia)
         linear, angular = (gains.momentum_weight * _SECOND**part for part in (priority, 1.0 - priority))
         spring = Spring(gains.posture_stiffness, gains.posture_damping)
         lifted = [s.joints for foot, s in enumerate(self.robot.soles) if foot not in reference.stance]
         joints = np.concatenate([self.robot.upper_body, *lifted])
         return [
-            Output("linear momentum", A[:3] / mass, bias[:3] / mass, desired[:3] / mass, linear),
-            Output("angular momentum", turn @ A[3:], turn @ bias[3:], turn @ desired[3:], angular),
+            *momentum_outputs(self.robot.mass, dynamics, desired, reference.controlled, linear, angular),
             pelvis_output(dynamics, reference, spring, gains.pelvis_weight),
             posture_output(dynamics, reference, joints, spring, gains.posture_weight),
         ]

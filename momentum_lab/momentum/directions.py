@@ -13,7 +13,9 @@ NAMES = ("lx", "ly", "lz", "kx", "ky", "kz")
 ALL: Directions = (True, True, True, True, True, True)
 """All six."""
 
-_GROUPS = {"all": frozenset(NAMES), "linear": frozenset(NAMES[:3]), "angular": frozenset(NAMES[3:])}
+_GROUPS = {"all": frozenset(NAMES), "linear": frozenset(NAMES[:3]), "angular": frozenset(NAMES[3:])} | {
+    "none": frozenset()
+}
 
 
 def directions(text: str) -> Directions:
@@ -29,6 +31,18 @@ def directions(text: str) -> Directions:
         wanted |= _GROUPS.get(part, frozenset((part,)))
     lx, ly, lz, kx, ky, kz = (name in wanted for name in NAMES)
     return lx, ly, lz, kx, ky, kz
+
+
+def text_of(controlled: Directions) -> str:
+    """The shortest text that names some directions; `none` for none at all."""
+    words = [
+        [group] if all(chosen) else [name for name, wanted in zip(names, chosen, strict=True) if wanted]
+        for group, names, chosen in (
+            ("linear", NAMES[:3], controlled[:3]),
+            ("angular", NAMES[3:], controlled[3:]),
+        )
+    ]
+    return "all" if all(controlled) else "+".join(words[0] + words[1]) or "none"
 
 
 def axes(controlled: Directions) -> tuple[str, str]:

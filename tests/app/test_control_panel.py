@@ -9,7 +9,7 @@ from momentum_lab.app.control_panel import Choices, ControlPanel, changed_gains
 from momentum_lab.app.playback import Playback
 from momentum_lab.control.computed_torque import ComputedTorqueGains
 from momentum_lab.control.gains import GainInfo, declared_gains
-from momentum_lab.events import LoadScenario, SelectRobot, SetGain, SetPriority
+from momentum_lab.events import LoadScenario, SelectRobot, SetDirections, SetGain, SetPriority
 from momentum_lab.scenario import Scenario
 from tests.app.fakes import FakeGui
 
@@ -86,3 +86,14 @@ def test_changes_have_units():
     values["linear_damping"] = 12.0
     default = DECLARED["linear_damping"].default
     assert changed_gains(DECLARED.values(), values) == [f"linear damping: {default:g} → 12 1∕s"]
+
+
+def test_directions_are_ticked_one_by_one_and_follow_the_truth(desk):
+    up, turn = desk.gui.widgets["linear, up (l z)"], desk.gui.widgets["angular, about forward (k x)"]
+    assert up.value
+    assert turn.value
+    turn.set_by_person(False)
+    up.set_by_person(False)
+    assert desk.posted == [SetDirections("linear+ky+kz"), SetDirections("lx+ly+ky+kz")]
+    desk.panel.follow(msgspec.structs.replace(desk.truth, controlled="lx"))
+    assert not desk.gui.widgets["linear, left (l y)"].value

@@ -17,6 +17,7 @@ from momentum_lab.events import (
     Reset,
     SelectController,
     SelectRobot,
+    SetDirections,
     SetGain,
     SetPriority,
     SetSpeed,
@@ -68,7 +69,14 @@ def test_what_waits_for_the_next_tick_counts_as_done(playback):
 
 
 @pytest.mark.parametrize(
-    "event", [SetPriority(2.0), SetGain("nonsense", 1.0), SetGain("friction", 99.0), SelectRobot("nobody")]
+    "event",
+    [
+        SetPriority(2.0),
+        SetDirections("up"),
+        SetGain("nonsense", 1.0),
+        SetGain("friction", 99.0),
+        SelectRobot("nobody"),
+    ],
 )
 def test_what_is_not_allowed_changes_nothing(playback, event):
     before = truth(playback)
@@ -187,13 +195,16 @@ def test_a_branch_goes_on_from_there_with_what_was_chosen_meanwhile(fallen):
     fallen.take(SelectController("slack-qp"))
     fallen.take(SetGain("com_damping", 12.0))
     fallen.take(SetPriority(0.5))
+    fallen.take(SetDirections("kz+linear"))
+    assert truth(fallen).controlled == "linear+kz"
     fallen.take(Branch())
     now = truth(fallen)
     assert fallen.shown.number("time") == fallen.latest.number("time") == pytest.approx(0.05)
     assert (now.playing, now.fall, now.behind) == (True, None, 0.0)
     assert (now.controller, now.priority, now.gains["com_damping"]) == ("slack-qp", 0.5, 12.0)
     assert np.array_equal(fallen.session.recording.rows()[:50], rows[:50])
-    assert [entry.tick for entry in fallen.session.log] == [50, 50, 50]
+    assert now.controlled == "linear+kz"
+    assert [entry.tick for entry in fallen.session.log] == [50, 50, 50, 50]
     fallen.tick(1)
     assert fallen.session.controller == "slack-qp"
 

@@ -24,6 +24,7 @@ EVENTS = [
     events.SetGain("friction", 0.5),
     events.SetPriority(0.25),
     events.SelectController("computed-torque"),
+    events.SetDirections("linear+kz"),
     events.ApplyPush(Push(force=217.0, body="head", shape="half-sine")),
     events.Reset(),
     events.Play(),

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 from momentum_lab.errors import InputError
-from momentum_lab.momentum.directions import ALL, NAMES, axes, directions
+from momentum_lab.momentum.directions import ALL, NAMES, axes, directions, text_of
 
 
 @pytest.mark.parametrize(
@@ -22,6 +24,14 @@ def test_text_names_directions(text, expected):
     assert directions(text) == expected
 
 
+def test_the_shortest_text_names_the_same_directions():
+    for chosen in itertools.product((True, False), repeat=6):
+        assert directions(text_of(chosen)) == chosen
+    assert text_of(ALL) == "all"
+    assert text_of(directions("kz+lz+ly+lx")) == "linear+kz"
+    assert text_of((False,) * 6) == "none"
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_name_is_one_direction(name):
     assert [NAMES[i] for i, wanted in enumerate(directions(name)) if wanted] == [name]
@@ -35,5 +45,5 @@ def test_axes_are_the_letters_of_each_block():
 
 @pytest.mark.parametrize("text", ["", "linear+", "k", "LX"])
 def test_other_text_is_refused_with_all_names(text):
-    with pytest.raises(InputError, match=r"directions: got .*; allowed: all, linear, angular, lx"):
+    with pytest.raises(InputError, match=r"directions: got .*; allowed: all, linear, angular, none, lx"):
         directions(text)
