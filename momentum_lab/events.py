@@ -30,8 +30,14 @@ class SetDirections(msgspec.Struct, frozen=True, tag=True):
     controlled: str
 
 
+class SelectPlanner(msgspec.Struct, frozen=True, tag=True):
+    """Change what makes the momentum rates that are asked for."""
+
+    name: str
+
+
 class SelectController(msgspec.Struct, frozen=True, tag=True):
-    """Change the controller; its gains start at their defaults."""
+    """Change the controller; its gains start at their defaults, and so does a planner that it cannot take."""
 
     name: str
 
@@ -91,7 +97,7 @@ class Branch(msgspec.Struct, frozen=True, tag=True):
     """Go on from the instant that is looked at, with the gains, priority and controller of now."""
 
 
-SessionEvent = SetGain | SetPriority | SetDirections | SelectController | ApplyPush | Reset
+SessionEvent = SetGain | SetPriority | SetDirections | SelectPlanner | SelectController | ApplyPush | Reset
 PlaybackEvent = Play | Pause | StepOnce | SetSpeed | SelectRobot | LoadScenario | LookBack | Branch
 Event = SessionEvent | PlaybackEvent
 

@@ -44,6 +44,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         robot: a robot of the catalog, or the path of a robot's TOML file.
         controller: a controller of the registry.
         controlled: the directions of momentum that are asked for, such as `all` or `linear+kz`.
+        planner: what makes the momentum rates that are asked for, a row of Table 1.
         stance: the feet the robot stands on; empty: all of them.
         com_outside: how far outside the outer edge of its only stance foot the CoM starts, m; None: the robot
             starts where it is to stand.
@@ -65,6 +66,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     robot: str = "talos"
     controller: str = "computed-torque"
     controlled: str = "all"
+    planner: str = "momentum"
     stance: tuple[str, ...] = ()
     com_outside: Annotated[float, msgspec.Meta(ge=-MAX_LEAN, le=MAX_LEAN)] | None = None
     drop_height: Annotated[float, msgspec.Meta(ge=0.0, le=MAX_DROP)] = 0.0

@@ -15,7 +15,8 @@ from momentum_lab.control.controller import Controller, ControlOutput
 from momentum_lab.control.fallback import limp
 from momentum_lab.control.gains import with_gains
 from momentum_lab.control.handover import Handover
-from momentum_lab.control.registry import controller_entry
+from momentum_lab.control.planner import OWN
+from momentum_lab.control.registry import check_planner, controller_entry
 from momentum_lab.control.standing import StandingGoal
 from momentum_lab.errors import InputError, ScenarioError, SimulationError
 from momentum_lab.events import (
@@ -23,6 +24,7 @@ from momentum_lab.events import (
     LoggedEvent,
     Reset,
     SelectController,
+    SelectPlanner,
     SessionEvent,
     SetDirections,
     SetGain,
@@ -86,6 +88,7 @@ class Session:
     pushes: tuple[Push, ...]
     priority: float
     controlled: Directions
+    planner: str
     controller: str
     gains: Any
     fall: Fall | None
@@ -120,6 +123,7 @@ class Session:
         self.log: list[LoggedEvent] = []
         self.ticks = 0
         self._inbox: deque[SessionEvent] = deque()
+        self.planner = check_planner(scenario.planner, scenario.controller)
         self._select(scenario.controller)
         self.gains = with_gains(self.gains, scenario.gains)
         self._stand_up()
@@ -187,7 +191,7 @@ class Session:
         """The controller's answer; a robot that has fallen goes limp."""
         if self.fall is not None:
             return limp(self.robot, dynamics, self._memory)
-        reference = self._goal.reference(dynamics, self.controlled)
+        reference = self._goal.reference(dynamics, self.controlled, self.planner)
         output = self._controller.compute(dynamics, reference, self.gains, self.priority, self._memory)
         if output.failure is not None:
             self.solver_failures += 1
@@ -245,6 +249,8 @@ class Session:
                 _checked_priority(value)
             case SetDirections(text):
                 directions(text)
+            case SelectPlanner(name):
+                check_planner(name, self._controller_to_be())
             case SelectController(name):
                 controller_entry(name)
             case ApplyPush(push):
@@ -264,6 +270,9 @@ class Session:
             case SetDirections(text):
                 self.controlled = directions(text)
                 self._taken_over = True
+            case SelectPlanner(name):
+                self.planner = name
+                self._taken_over = True
             case SelectController(name):
                 self._select(name)
                 self._memory = self._controller.initial_memory(self.dynamics)
@@ -279,6 +288,8 @@ class Session:
         entry = controller_entry(name)
         self.controller = name
         self.gains = entry.gains
+        if self.planner not in entry.planners:
+            self.planner = OWN
         self._controller = entry.make(self.robot, self.scenario.timestep)
 
     def _stand_up(self) -> None:

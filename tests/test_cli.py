@@ -25,6 +25,7 @@ from momentum_lab.cli import listing, main, progress
 from momentum_lab.cli import run as run_command
 from momentum_lab.cli.arguments import parsed
 from momentum_lab.cli.choices import chosen_scenario
+from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import SimulationError
 from momentum_lab.experiments.figures import FIGURES
@@ -121,8 +122,11 @@ BAD_VALUES = [
     ("app --port http", "--port: got http; allowed: a whole number from 0 to 65535"),
     ("--port -1", "--port: got -1; allowed: a whole number from 0 to 65535"),
     ("bench --seconds 0", "--seconds: got 0; allowed: a number from 1 to 600 (s)"),
-    ("list", "list: got nothing; allowed: robots, controllers, scenarios, lessons, figures, gains"),
-    ("list cats", "list: got cats; allowed: robots, controllers, scenarios, lessons, figures, gains"),
+    ("list", "list: got nothing; allowed: robots, controllers, planners, scenarios, lessons, figures, gains"),
+    (
+        "list cats",
+        "list: got cats; allowed: robots, controllers, planners, scenarios, lessons, figures, gains",
+    ),
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
     ("fly", "command: got fly; allowed: app, run, figure, list, equations, bench"),
 ]
@@ -374,6 +378,7 @@ def test_recording_larger_than_memory_is_one_line(capsys: Output, monkeypatch: p
         ("robots", robot_names()),
         ("scenarios", scenario_names()),
         ("controllers", list(CONTROLLERS)),
+        ("planners", list(PLANNERS)),
         ("figures", list(FIGURES)),
     ],
 )

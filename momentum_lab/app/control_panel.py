@@ -12,10 +12,12 @@ from momentum_lab.app import html
 from momentum_lab.app.widgets import Bound, Post, nice_step
 from momentum_lab.app.wire import Truth
 from momentum_lab.control.gains import GainInfo, declared_gains
+from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.events import (
     LoadScenario,
     SelectController,
+    SelectPlanner,
     SelectRobot,
     SetDirections,
     SetGain,
@@ -74,6 +76,16 @@ class ControlPanel:
             SelectController,
             post,
         )
+        self._planner = Bound(
+            gui.add_dropdown(
+                "planner",
+                tuple(PLANNERS),
+                initial_value=truth.planner,
+                hint=" ".join(f"{name}: {planner.summary}" for name, planner in PLANNERS.items()),
+            ),
+            SelectPlanner,
+            post,
+        )
         gui.add_html(html.sentence("When the ground cannot give both momentum rates:"))
         self._priority: Bound[float] = Bound(
             gui.add_slider(
@@ -98,6 +110,7 @@ class ControlPanel:
         self._robot.follow(truth.robot)
         self._scenario.follow(truth.scenario)
         self._controller.follow(truth.controller)
+        self._planner.follow(truth.planner)
         self._priority.follow(truth.priority)
         self._directions.follow(truth)
         if truth.controller != self._gains.controller:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from momentum_lab.app.wire import Fallen, Truth
 from momentum_lab.control.gains import declared_gains
+from momentum_lab.control.planner import OWN
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.events import (
@@ -18,6 +19,7 @@ from momentum_lab.events import (
     Play,
     Reset,
     SelectController,
+    SelectPlanner,
     SelectRobot,
     SessionEvent,
     SetDirections,
@@ -42,11 +44,12 @@ _AT_ONCE, _IN_PASSING = 2000, 256
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """What a person has chosen for a session: controller, priority, directions, and all gains by name."""
+    """What a person has chosen for a session: controller, priority, directions, planner, and all gains by name."""
 
     controller: str
     priority: float
     controlled: str
+    planner: str
     gains: dict[str, float]
 
     def until(self, other: Chosen) -> list[SessionEvent]:
@@ -60,6 +63,8 @@ class Chosen:
             events.append(SetPriority(other.priority))
         if other.controlled != self.controlled:
             events.append(SetDirections(other.controlled))
+        if other.planner != self.planner:
+            events.append(SelectPlanner(other.planner))
         return events + [SetGain(name, value) for name, value in other.gains.items() if value != gains[name]]
 
 
@@ -145,6 +150,7 @@ class Playback:
             controller=chosen.controller,
             priority=chosen.priority,
             controlled=chosen.controlled,
+            planner=chosen.planner,
             gains=chosen.gains,
             playing=self.playing,
             speed=self.speed,
@@ -161,18 +167,21 @@ class Playback:
         """The choices of this moment; those that wait for the next tick count as made."""
         session = self.session
         priority, controlled = session.priority, text_of(session.controlled)
-        controller, gains = session.controller, _values(session.gains)
+        controller, planner, gains = session.controller, session.planner, _values(session.gains)
         for event in self._waiting:
             match event:
                 case SetPriority(value):
                     priority = value
                 case SetDirections(text):
                     controlled = text_of(directions(text))
+                case SelectPlanner(name):
+                    planner = name
                 case SetGain(name, value):
                     gains[name] = value
                 case SelectController(name):
                     controller, gains = name, _values(controller_entry(name).gains)
-        return Chosen(controller, priority, controlled, gains)
+                    planner = planner if planner in controller_entry(name).planners else OWN
+        return Chosen(controller, priority, controlled, planner, gains)
 
     def _fall(self) -> Fallen | None:
         """The fall, unless it is still to come at the instant that is looked at."""
@@ -242,6 +251,7 @@ class Playback:
             controller=truth.controller,
             priority=truth.priority,
             controlled=truth.controlled,
+            planner=truth.planner,
             gains=gains,
         )
 

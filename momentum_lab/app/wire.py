@@ -34,6 +34,7 @@ class Truth(msgspec.Struct, frozen=True):
         controller: name of the controller.
         priority: from 0 to 1.
         controlled: the directions of momentum that are asked for, in the shortest words.
+        planner: what makes the momentum rates that are asked for.
         gains: all gains of the controller.
         playing: whether simulated time runs.
         speed: the fraction of real time it is asked to run at.
@@ -52,6 +53,7 @@ class Truth(msgspec.Struct, frozen=True):
     controller: str
     priority: float
     controlled: str
+    planner: str
     gains: dict[str, float]
     playing: bool
     speed: float

@@ -15,7 +15,7 @@ from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
 from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 
 COMMANDS = ("app", "run", "figure", "list", "equations", "bench")
-KINDS = ("robots", "controllers", "scenarios", "lessons", "figures", "gains")
+KINDS = ("robots", "controllers", "planners", "scenarios", "lessons", "figures", "gains")
 _MAX_PORT = 65535
 _MAX_BENCH_SECONDS, _MAX_BENCH_MINUTES = 600.0, 60.0
 _ABOVE_ZERO = math.ulp(0.0)
@@ -141,7 +141,11 @@ def _parser() -> _Parser:
             "one of the chapter's figures: picture, numbers, and claims that are checked",
             _figure_arguments,
         ),
-        ("list", "what there is: robots, controllers, scenarios, lessons, figures, gains", _list_arguments),
+        (
+            "list",
+            "what there is: robots, controllers, planners, scenarios, lessons, figures, gains",
+            _list_arguments,
+        ),
         ("equations", "how exactly the chapter's equations hold on a robot", _equations_arguments),
         ("bench", "how fast the lab is on this machine", _bench_arguments),
     ):
@@ -238,6 +242,7 @@ def _choice_arguments(parser: _Parser) -> None:
         type=_directions,
         help="directions of momentum that are asked for: all, linear+kz, lx+ly, ...",
     )
+    parser.add_argument("--planner", metavar="P", help="what makes the momentum rates that are asked for")
 
 
 def _figure_arguments(parser: _Parser) -> None:

@@ -13,6 +13,7 @@ from rich.table import Table
 
 from momentum_lab.cli.arguments import KINDS
 from momentum_lab.control.gains import declared_gains
+from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.registry import CONTROLLERS, controller_entry
 from momentum_lab.errors import InputError
 from momentum_lab.paths import LESSONS
@@ -50,6 +51,14 @@ def controllers() -> Things:
     """All controllers of the registry."""
     return [
         {"name": name, "title": entry.title, "summary": entry.summary} for name, entry in CONTROLLERS.items()
+    ]
+
+
+def planners() -> Things:
+    """All rows of Table 1 that can stand above a controller."""
+    return [
+        {"name": name, "title": planner.title, "summary": planner.summary}
+        for name, planner in PLANNERS.items()
     ]
 
 
@@ -91,6 +100,7 @@ def gains(controller: str) -> Things:
 _LISTS: dict[str, Callable[[], Things]] = {
     "robots": robots,
     "controllers": controllers,
+    "planners": planners,
     "scenarios": scenarios,
     "lessons": lessons,
     "figures": figures,

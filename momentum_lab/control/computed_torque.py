@@ -14,6 +14,7 @@ from momentum_lab.control.desired import desired_momentum_rate
 from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture, without_ground
 from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds, StanceFeet
 from momentum_lab.control.gains import gain
+from momentum_lab.control.planner import OWN, PLANNERS, Support
 from momentum_lab.control.priority import Compromise, compromise
 from momentum_lab.errors import SolverError
 from momentum_lab.momentum.directions import ALL
@@ -122,6 +123,9 @@ class ComputedTorque:
         if not carrying:
             return self._fallback(dynamics, reference, desired, "no foot is on the ground")
         stance = self.footing.stance_feet(dynamics, carrying, gains.safe_border)
+        if reference.planner != OWN:
+            support = Support(self.robot.mass, stance.safe_polygon, stance.height)
+            desired = PLANNERS[reference.planner].plan(desired, dynamics, reference, support)
         program, weights = self._acceleration_program(reference.stance), _weights(gains)
         if reference.controlled != ALL:
             desired = program.rate_with_free_directions(dynamics, desired, reference, weights)

@@ -26,6 +26,7 @@ class Reference:
         sole_height: height of the ground under each sole origin (F,), m.
         controlled: which of l_x, l_y, l_z, k_x, k_y, k_z are asked for; the others are left free
             (section 5.3.1).
+        planner: what makes the rates that are asked for out of Eqs. 37 and 38, a row of Table 1.
     """
 
     com: np.ndarray
@@ -36,6 +37,7 @@ class Reference:
     stance: tuple[int, ...]
     sole_height: np.ndarray
     controlled: Directions = ALL
+    planner: str = "momentum"
 
 
 @dataclass(frozen=True, slots=True)

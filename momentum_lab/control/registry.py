@@ -9,6 +9,7 @@ from typing import Any
 from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueGains
 from momentum_lab.control.controller import Controller
 from momentum_lab.control.placo_wbc import PlacoWbc, PlacoWbcGains
+from momentum_lab.control.planner import OWN, PLANNERS, planner_named
 from momentum_lab.control.resolved_momentum import ResolvedMomentum, ResolvedMomentumGains
 from momentum_lab.control.slack_qp import SlackGains, SlackQP
 from momentum_lab.control.whole_body_qp import WholeBodyGains, WholeBodyQP
@@ -25,12 +26,15 @@ class ControllerEntry:
         summary: what it is, in one sentence.
         make: builds it for a robot and a timestep (s).
         gains: its gains at their defaults.
+        planners: the rows of Table 1 that may stand above it; those that are about momentum rates need a
+            controller that takes rates.
     """
 
     title: str
     summary: str
     make: Callable[[RobotModel, float], Controller]
     gains: Any
+    planners: tuple[str, ...] = (OWN,)
 
 
 CONTROLLERS: dict[str, ControllerEntry] = {
@@ -39,6 +43,7 @@ CONTROLLERS: dict[str, ControllerEntry] = {
         summary="Admissible foot forces, then accelerations, then torques (sections 4.2 and 5.1).",
         make=ComputedTorque,
         gains=ComputedTorqueGains(),
+        planners=tuple(PLANNERS),
     ),
     "resolved-momentum": ControllerEntry(
         title="Resolved momentum",
@@ -63,6 +68,7 @@ CONTROLLERS: dict[str, ControllerEntry] = {
         summary="Accelerations, forces and torques in one quadratic program, momentum first.",
         make=WholeBodyQP,
         gains=WholeBodyGains(),
+        planners=tuple(PLANNERS),
     ),
 }
 
@@ -76,3 +82,16 @@ def controller_entry(name: str) -> ControllerEntry:
     if name not in CONTROLLERS:
         raise InputError("controller", name, f"one of {', '.join(CONTROLLERS)}")
     return CONTROLLERS[name]
+
+
+def check_planner(name: str, controller: str) -> str:
+    """The name, if that planner may stand above that controller.
+
+    Raises:
+        InputError: there is no such planner or controller, or they do not go together.
+    """
+    planner_named(name)
+    allowed = controller_entry(controller).planners
+    if name not in allowed:
+        raise InputError("planner", name, f"{', '.join(allowed)} above {controller}")
+    return name

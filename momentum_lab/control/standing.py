@@ -8,6 +8,7 @@ import numpy as np
 
 from momentum_lab.compiled import compiled
 from momentum_lab.control.controller import Reference
+from momentum_lab.control.planner import OWN
 from momentum_lab.momentum.directions import ALL, Directions
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
@@ -36,12 +37,13 @@ class StandingGoal:
         self._still = np.zeros(3)
         self._level = np.zeros(len(robot.soles))
 
-    def reference(self, dynamics: Dynamics, controlled: Directions = ALL) -> Reference:
+    def reference(self, dynamics: Dynamics, controlled: Directions = ALL, planner: str = OWN) -> Reference:
         """The goal for a state whose soles are where `dynamics` says, on level ground at height 0.
 
         Args:
             dynamics: the state with everything computed.
             controlled: the directions of momentum that are asked for (section 5.3.1).
+            planner: a row of Table 1.
         """
         com, pelvis = standing_goal(
             dynamics.sole_position,
@@ -60,6 +62,7 @@ class StandingGoal:
             stance=self.stance,
             sole_height=self._level,
             controlled=controlled,
+            planner=planner,
         )
 
     def _place(self, dynamics: Dynamics) -> tuple[np.ndarray, float]:

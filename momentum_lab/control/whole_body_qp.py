@@ -26,6 +26,7 @@ from momentum_lab.control.outputs import (
     pelvis_output,
     posture_output,
 )
+from momentum_lab.control.planner import OWN, PLANNERS, Support
 from momentum_lab.control.qp import solve
 from momentum_lab.control.regulated import RegulatedMomentum
 from momentum_lab.control.stance_motion import Affine, StanceMotion, stance_motion
@@ -122,6 +123,10 @@ class WholeBodyQP:
         if not carrying:
             return hold(self.robot, dynamics, reference, "no foot is on the ground", memory)
         desired = self.desired_rate(dynamics, reference, gains)
+        if reference.planner != OWN:
+            stance = self.footing.stance_feet(dynamics, carrying, gains.safe_border)
+            support = Support(self.robot.mass, stance.safe_polygon, stance.height)
+            desired = PLANNERS[reference.planner].plan(desired, dynamics, reference, support)
         motion = stance_motion(dynamics, reference, carrying, gains.contact_damping)
         program = self._program(reference.stance, carrying)
         outputs = self._outputs(dynamics, reference, desired, gains, priority)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from momentum_lab.control.planner import OWN, PLANNERS
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.experiments.canvas import CMP, COM, COP, FORCE, SPIN, band, canvas, finish, heading
 from momentum_lab.experiments.choice import chosen
@@ -29,12 +30,20 @@ _MM = 1e3
 _COLORS = (COP, CMP, FORCE, COM, SPIN)
 # Methods that choose foot forces before they move; the others find out what the ground gave.
 _FORCE_FIRST = ("computed-torque", "placo-wbc", "slack-qp", "whole-body-qp")
+# Rows a and c stand above computed torque, which then grants what they ask.
+_PLANNED = tuple(name for name in PLANNERS if name != OWN)
 
 
 def scenarios(robot: str | None) -> dict[str, Scenario]:
-    """The same push for every controller, each with its own gains."""
+    """The same push for every controller, each with its own gains, and for the other rows' planners."""
     scenario = chosen("table1", robot)
-    return {name: changed(scenario, controller=name, gains={}) for name in CONTROLLERS}
+    methods = {name: changed(scenario, controller=name, gains={}) for name in CONTROLLERS}
+    return methods | {name: changed(methods["computed-torque"], planner=name) for name in _PLANNED}
+
+
+def title(name: str) -> str:
+    """What a method is called: a controller, or a planner above computed torque."""
+    return CONTROLLERS[name].title if name in CONTROLLERS else f"{PLANNERS[name].title}, planned"
 
 
 def planned_beyond(session: Session) -> float:
@@ -49,6 +58,16 @@ def measured_beyond(session: Session) -> float:
     """The same for the CoP that the ground gave, on 99 % of the ticks, m."""
     measured = session.recording.column("foot_cop_measured")[:, :, 0]
     return float(np.nanpercentile(measured, 99) - session.robot.soles[0].upper[0])
+
+
+def force_beyond(session: Session) -> float:
+    """How far the CMP of the desired force goes beyond the front edge of the soles, m (Eqs. 22, 39)."""
+    columns = session.recording.column
+    force = columns("momentum_rate_desired")[:, :3] + [0.0, 0.0, session.robot.mass * GRAVITY]
+    asked = (columns("fallen") == 0.0) & (force[:, 2] > 0.0)
+    force, com, sole = force[asked], columns("com")[asked], columns("sole_pose")[asked, 0]
+    cmp = com[:, 0] - force[:, 0] / force[:, 2] * (com[:, 2] - sole[:, 2])
+    return float((cmp - sole[:, 0]).max() - session.robot.soles[0].upper[0])
 
 
 def settled(session: Session) -> float:
@@ -73,6 +92,14 @@ def claims(runs: Runs) -> list[Claim]:
     force_first = min(_spin(runs[name]) for name in ("computed-torque", "whole-body-qp"))
     ratio = _spin(runs["resolved-momentum"]) / force_first
     found.append(at_least("it turns the body more than the method that turns it least", ratio, 1.0, "times"))
+    beyond, wanted = (_MM * force_beyond(runs[name]) for name in ("cop-to-com", "computed-torque"))
+    found.append(at_most("cop-to-com: CMP of the desired force beyond the toes", beyond, 0.1, "mm"))
+    found.append(at_least("computed-torque: the same, which turns the body", wanted, 1.0, "mm"))
+    for name in _PLANNED:
+        beyond = _MM * planned_beyond(runs[name])
+        found.append(at_most(f"{name}: planned CoP beyond the toes", beyond, 0.1, "mm"))
+    outside = int(saturated(runs["cop-and-force"]).sum())
+    found.append(at_most("cop-and-force: ticks on which its CoP is not granted", outside, 0, "ticks"))
     return found
 
 
@@ -84,7 +111,7 @@ def table(runs: Runs) -> Columns:
     """One row for every method."""
     sessions = list(runs.values())
     return {
-        "method": [CONTROLLERS[name].title for name in runs],
+        "method": [title(name) for name in runs],
         "result": [fate(session).partition(":")[0] for session in sessions],
         "CoM moved at most [mm]": [_MM * largest(com_moved(session)) for session in sessions],
         "|k_y| at most [N m s]": [_spin(session) for session in sessions],
@@ -112,12 +139,13 @@ def draw(runs: Runs) -> Any:
             lambda run: run.recording.column("momentum")[:, 4],
         ),
     )
-    for panel, title, unit, values in quantities:
-        for (name, session), color in zip(runs.items(), _COLORS, strict=False):
-            panel.plot(times(session), values(session), color=color, label=CONTROLLERS[name].title)
+    for panel, subtitle, unit, values in quantities:
+        for i, (name, session) in enumerate(runs.items()):
+            color, dash = _COLORS[i % len(_COLORS)], "-" if i < len(_COLORS) else "--"
+            panel.plot(times(session), values(session), dash, color=color, label=title(name))
         band(panel, first)
         panel.set_xlim(0.0, push_end(first) + 1.7)
-        finish(panel, title, "time [s]", unit, loc="upper right")
+        finish(panel, subtitle, "time [s]", unit, loc="upper right")
     grid = axes[1, 0].get_gridspec()
     for panel in axes[1]:
         panel.remove()

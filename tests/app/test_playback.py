@@ -203,7 +203,7 @@ def test_a_branch_goes_on_from_there_with_what_was_chosen_meanwhile(fallen):
     assert (now.playing, now.fall, now.behind) == (True, None, 0.0)
     assert (now.controller, now.priority, now.gains["com_damping"]) == ("slack-qp", 0.5, 12.0)
     assert np.array_equal(fallen.session.recording.rows()[:50], rows[:50])
-    assert now.controlled == "linear+kz"
+    assert (now.controlled, now.planner) == ("linear+kz", "momentum")
     assert [entry.tick for entry in fallen.session.log] == [50, 50, 50, 50]
     fallen.tick(1)
     assert fallen.session.controller == "slack-qp"

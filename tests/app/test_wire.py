@@ -25,6 +25,7 @@ EVENTS = [
     events.SetPriority(0.25),
     events.SelectController("computed-torque"),
     events.SetDirections("linear+kz"),
+    events.SelectPlanner("cop-to-com"),
     events.ApplyPush(Push(force=217.0, body="head", shape="half-sine")),
     events.Reset(),
     events.Play(),
