@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from momentum_lab.compiled import compiled
-from momentum_lab.control.controller import ControlOutput
+from momentum_lab.control.controller import SLACKS, ControlOutput
 from momentum_lab.momentum.ground import GRAVITY, cmp_coordinates, cop_coordinates, sole_cop
 from momentum_lab.momentum.pendulum import capture_coordinates
 from momentum_lab.momentum.wrench import sum_wrenches
@@ -17,6 +17,7 @@ from momentum_lab.robot.rotation import quaternion_of
 from momentum_lab.robot.state import Dynamics
 
 _MATRIX, _VECTOR = "f8[:, ::1]", "f8[::1]"
+_NO_SLACK = np.zeros(len(SLACKS))
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +78,9 @@ def observe(row: np.ndarray, tick: Tick) -> None:
         step.push_wrench,
         step.momentum_rate,
         step.contact_residual,
+        slack_of(output),
+        output.torque,
+        tick.robot.effort_limit,
         tick.time,
         tick.timestep,
         tick.ground_height,
@@ -85,6 +89,22 @@ def observe(row: np.ndarray, tick: Tick) -> None:
         output.failure is not None,
         tick.fallen,
     )
+
+
+def slack_of(output: ControlOutput) -> np.ndarray:
+    """The slacks of an answer in the order of `SLACKS`; 0 where it has none."""
+    if not output.slack:
+        return _NO_SLACK
+    return np.array([output.slack.get(name, 0.0) for name in SLACKS])
+
+
+@compiled("f8(f8[::1], f8[::1])")
+def torque_ratio(torque: np.ndarray, limit: np.ndarray) -> float:
+    """Largest |tau_j| / tau_max,j over all joints (na,)."""
+    largest = 0.0
+    for j in range(len(torque)):
+        largest = max(largest, abs(torque[j]) / limit[j])
+    return largest
 
 
 @compiled("f8[:, ::1](f8[:, ::1], f8[:, :, ::1])")
@@ -144,7 +164,8 @@ def put(row: np.ndarray, start: int, numbers: np.ndarray) -> int:
     # the row, then what comes from the dynamics, the output, the step, and the tick itself
     f"void({_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_MATRIX}, "
     f"f8[:, :, ::1], {_VECTOR}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, "
-    f"{_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}, f8, f8, f8, f8, f8, f8, b1, b1)"
+    f"{_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}, f8, {_VECTOR}, {_VECTOR}, {_VECTOR}, "
+    f"f8, f8, f8, f8, f8, b1, b1)"
 )
 def fill(
     row: np.ndarray,
@@ -170,6 +191,9 @@ def fill(
     push_wrench: np.ndarray,
     momentum_rate: np.ndarray,
     contact_residual: float,
+    slack: np.ndarray,
+    torque_demanded: np.ndarray,
+    effort_limit: np.ndarray,
     time: float,
     timestep: float,
     ground_height: float,
@@ -208,7 +232,15 @@ def fill(
     end = put(row, end, sole_cops(foot_wrench, sole_rotation).ravel())
     end = put(row, end, push_wrench)
     end = put(row, end, other_wrench)
-    numbers = (priority, residual / weight, contact_residual, 1.0 * failed, 1.0 * fallen)
+    end = put(row, end, slack)
+    numbers = (
+        torque_ratio(torque_demanded, effort_limit),
+        priority,
+        residual / weight,
+        contact_residual,
+        1.0 * failed,
+        1.0 * fallen,
+    )
     end = put(row, end, np.array(numbers))
     if end != row.size:
         raise ValueError("the quantities of a tick do not fill a row")

@@ -13,6 +13,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
+from momentum_lab.control.controller import SLACKS
 from momentum_lab.errors import InputError
 from momentum_lab.robot.model import RobotModel
 
@@ -36,7 +37,9 @@ class Layout:
         """The layout for a robot: F feet, linear before angular, world axes, SI.
 
         Wrenches of feet are about the sole frame's origin, ground on robot; the push and all other contacts
-        about the world origin; momentum and its rates about the CoM.
+        about the world origin; momentum and its rates about the CoM. Slacks are those of `SLACKS`,
+        0 where a law has none; the torque ratio is the largest torque that a controller asks for, as a part of
+        its motor's limit.
         """
         feet = len(robot.soles)
         shapes: dict[str, tuple[int, ...]] = {
@@ -62,6 +65,8 @@ class Layout:
             "foot_cop_measured": (feet, 2),
             "push_wrench": (6,),
             "other_contact_wrench": (6,),
+            "slack": (len(SLACKS),),
+            "torque_ratio": (),
             "priority": (),
             "equation_residual": (),
             "contact_residual": (),
@@ -225,6 +230,7 @@ def save_trace(recording: Recording, meta: dict[str, Any], path: Path) -> None:
     arrays: dict[str, Any] = {name: recording.column(name) for name in recording.layout.shapes}
     arrays["joint_names"] = np.array(recording.layout.joint_names)
     arrays["foot_names"] = np.array(recording.layout.foot_names)
+    arrays["slack_names"] = np.array(SLACKS)
     arrays["meta"] = np.array(json.dumps(meta, allow_nan=False))
     temporary = _beside(writable_file(path))
     try:
@@ -247,6 +253,7 @@ def load_trace(path: Path) -> Trace:
         with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
         joint_names, foot_names = arrays.pop("joint_names"), arrays.pop("foot_names")
+        arrays.pop("slack_names", None)
         meta = json.loads(str(arrays.pop("meta")))
     except (OSError, KeyError, ValueError, TypeError, EOFError, BadZipFile, zlib.error) as error:
         raise InputError("recording", path, f"a .npz file that this lab has written ({error})") from error

@@ -39,6 +39,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
         min_cop_margin: smallest distance of the CoP from the edge of the support until a fall, m; None if no
             sole ever supported.
         max_equation_residual: largest |A_G a + dA_G v - dh_measured| / (m g) (Eq. 20).
+        peak_torque_ratio: largest torque that the controller asked for, as a part of its motor's limit.
         qp_failures: ticks on which the controller fell back to its fallback torque.
         real_time_factor: simulated time over wall time.
         tick_us_p50: median wall time of a tick, us.
@@ -64,6 +65,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     peak_angular_momentum: float
     min_cop_margin: float | None
     max_equation_residual: float
+    peak_torque_ratio: float
     qp_failures: int
     real_time_factor: float
     tick_us_p50: float
@@ -99,6 +101,7 @@ def summarize(session: Session, timing: Timing) -> Summary:
         peak_angular_momentum=_largest(np.linalg.norm(session.recording.column("momentum")[:, 3:], axis=1)),
         min_cop_margin=_min_cop_margin(session, math.inf if fall_time is None else fall_time),
         max_equation_residual=_largest(session.recording.column("equation_residual")),
+        peak_torque_ratio=_largest(session.recording.column("torque_ratio")),
         qp_failures=session.solver_failures,
         real_time_factor=seconds / timing.wall_time,
         tick_us_p50=_percentile_us(timing.tick_time, 50.0),

@@ -6,7 +6,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from momentum_lab.control.controller import SLACKS
 from momentum_lab.control.fallback import limp
+from momentum_lab.control.registry import controller_entry
 from momentum_lab.observe import Tick, observe
 from momentum_lab.physics.simulator import Step
 from momentum_lab.recording import Layout
@@ -190,3 +192,36 @@ def test_in_the_air_there_is_no_cop(robot):
     assert not sample["foot_wrench_measured"].any()
     assert_close(sample["momentum_rate_measured"], [0.0, 0.0, -robot.mass * G, 0.0, 0.0, 0.0], 1e-9)
     assert np.isfinite(sample["capture_point"]).all()
+
+
+def test_slacks_and_torque_ratio_are_the_controllers(robot):
+    """Asked again at every state of a recovery: slacks by name, and the largest torque against its limit."""
+    session = played(robot, forward_push(robot, seconds=0.6, controller="slack-qp"))
+    entry = controller_entry("slack-qp")
+    controller = entry.make(robot, 1e-3)
+    column = session.recording.column
+    for i in range(210, 600, 40):
+        dynamics = robot.at(State(column("q")[i], column("v")[i]))
+        reference = session._goal.reference(dynamics)
+        out = controller.compute(dynamics, reference, entry.gains, 0.0, None)
+        assert_close(column("slack")[i], np.array([out.slack.get(name, 0.0) for name in SLACKS]), 1e-6)
+        assert column("torque_ratio")[i] == pytest.approx(np.abs(out.torque / robot.effort_limit).max())
+    assert np.abs(column("slack")).max() > 0.1
+    ours = played(robot, forward_push(robot)).recording
+    assert not ours.column("slack").any()
+    assert (
+        ours.column("torque_ratio") >= np.abs(ours.column("torque") / robot.effort_limit).max(axis=1) - 1e-12
+    ).all()
+
+
+def test_every_quantity_is_where_the_layout_says(robot):
+    """A row whose every quantity is recognised by its size and place: nothing is written over or left out."""
+    recording = played(robot, forward_push(robot)).recording
+    layout, row = recording.layout, recording.latest.row
+    assert sum(np.prod(shape, dtype=int) for shape in layout.shapes.values()) == row.size
+    assert np.isfinite(row).all()
+    sample = recording.latest
+    assert 0.0 < sample.number("torque_ratio") < 1.0
+    assert sample.number("priority") == 0.0
+    assert sample.number("fallen") == 0.0
+    assert sample["slack"].shape == (len(SLACKS),)

@@ -11,6 +11,7 @@ import pinocchio as pin
 import pytest
 
 from momentum_lab import __version__
+from momentum_lab.control.controller import SLACKS
 from momentum_lab.errors import InputError
 from momentum_lab.events import SetGain, SetPriority
 from momentum_lab.provenance import provenance
@@ -159,6 +160,8 @@ def test_file_holds_what_the_contract_says(path: Path, robot: RobotModel) -> Non
         assert file["joint_names"].tolist() == list(robot.model.names)[2:]
         assert file["foot_names"].tolist() == ["left", "right"]
         assert isinstance(json.loads(file["meta"].item()), dict)
+        assert file["slack_names"].tolist() == list(SLACKS)
+        assert file["slack"].shape == (len(file["time"]), len(SLACKS))
 
 
 def test_meta_says_how_to_run_it_again(trace: Trace, robot: RobotModel) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -11,6 +13,7 @@ import viser
 from momentum_lab.app import html
 from momentum_lab.app.widgets import Bound, Post, nice_step
 from momentum_lab.app.wire import Truth
+from momentum_lab.control.controller import SLACKS
 from momentum_lab.control.gains import GainInfo, declared_gains
 from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.registry import CONTROLLERS
@@ -24,15 +27,12 @@ from momentum_lab.events import (
     SetPriority,
 )
 from momentum_lab.momentum.directions import directions, text_of
+from momentum_lab.recording import Sample
 
-_DIRECTIONS = (
-    "linear, forward (l x)",
-    "linear, left (l y)",
-    "linear, up (l z)",
-    "angular, about forward (k x)",
-    "angular, about left (k y)",
-    "angular, about up (k z)",
-)
+_DIRECTIONS = ("lx: forward", "ly: left", "lz: up", "kx: about forward", "ky: about left", "kz: about up")
+_SLACK_UNITS = tuple("m/s²" if name.startswith("com") else "rad/s²" for name in SLACKS)
+# How often the slacks change on the screen, s.
+_PERIOD = 0.1
 # Viser breaks labels after a slash; this one it does not know.
 _TYPOGRAPHY = str.maketrans("/", "∕")
 
@@ -101,6 +101,9 @@ class ControlPanel:
             post,
         )
         gui.add_html(html.slider_ends("hold the CoM", "hold the posture"))
+        self._slacks = gui.add_html("", visible=False)
+        self._slacks_text = ""
+        self._next = -math.inf
         self._directions = _Directions(gui, post, truth)
         self._gains: _GainPanel = _GainPanel(gui, post, truth)
 
@@ -117,6 +120,17 @@ class ControlPanel:
             self._gains.remove()
             self._gains = _GainPanel(self._gui, self._post, truth)
         self._gains.follow(truth)
+
+    def see(self, sample: Sample) -> None:
+        """Show the slacks of a sample, ten times a second at most, if its controller has any."""
+        slack = sample["slack"]
+        if time.monotonic() < self._next:
+            return
+        self._next = time.monotonic() + _PERIOD
+        self._slacks.visible = bool(slack.any())
+        text = html.slacks(zip(SLACKS, slack.tolist(), _SLACK_UNITS, strict=True))
+        if text != self._slacks_text and self._slacks.visible:
+            self._slacks_text = self._slacks.content = text
 
 
 class _Directions:

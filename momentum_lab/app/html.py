@@ -79,6 +79,26 @@ def changes(lines: Iterable[str]) -> str:
     return f'<div class="lab">Changed:<ul class="n" style="margin:0;padding-left:1.2em">{found}</ul></div>'
 
 
+def slacks(values: Iterable[tuple[str, float, str]]) -> str:
+    """What has to wait: name, slack and unit of each output, with a bar as long as it is large."""
+    lines = "".join(
+        f"<tr><td>{escape(name)}</td>"
+        f'<td class="n" style="text-align:right;padding:0 .5em">{abs(value):.2f} {unit}</td>'
+        f'<td style="width:40%"><div style="width:{_share(value):.0f}%;height:.6em;background:{COLORS["orange"]}">'
+        "</div></td></tr>"
+        for name, value, unit in values
+    )
+    return (
+        '<div class="lab small"><b>What has to wait</b> <span class="dim">(slack: asked for, not given)</span>'
+        f'<table style="width:100%;border-collapse:collapse">{lines}</table></div>'
+    )
+
+
+def _share(value: float) -> float:
+    """Length of a bar in percent: half of it for a slack of 1, all of it for a very large one."""
+    return round(100.0 * abs(value) / (1.0 + abs(value)))
+
+
 def legend(keys: Iterable[str], explained: bool) -> str:
     """Symbol and name of some marks, with what they mean if asked for."""
     items = []

@@ -182,6 +182,7 @@ class Visitor:
         status = status_of(sample, loaded.model, fall, truth.failure, truth.stopped)
         panels.status.follow(truth, status, sample.number("time"))
         panels.control.follow(truth)
+        panels.control.see(sample)
         if truth.fall is None:
             panels.push.see(sample)
         panels.push.refresh()

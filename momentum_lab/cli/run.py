@@ -98,6 +98,7 @@ def _lines(summary: Summary) -> list[tuple[str, str]]:
         ("CoM moved at most", f"{1e3 * summary.peak_com_excursion:.1f} mm"),
         ("angular momentum at most", f"{summary.peak_angular_momentum:.2f} kg m^2/s"),
         ("smallest CoP margin", margin),
+        ("largest torque asked for", f"{summary.peak_torque_ratio:.2f} of its motor's limit"),
         ("solver failures", f"{summary.qp_failures} ticks"),
         ("equation residual", f"{summary.max_equation_residual:.1e} m g"),
         ("speed", f"{summary.real_time_factor:.2f} x real time"),

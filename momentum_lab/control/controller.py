@@ -11,6 +11,9 @@ import numpy as np
 from momentum_lab.momentum.directions import ALL, Directions
 from momentum_lab.robot.state import Dynamics
 
+SLACKS = ("com x", "com y", "com z", "pelvis x", "pelvis y", "pelvis z", "swing foot", "posture")
+"""What slacks are called, in the order of a recording; m/s^2 for a position, rad/s^2 for a rotation."""
+
 
 @dataclass(frozen=True, slots=True)
 class Reference:
@@ -54,7 +57,8 @@ class ControlOutput:
         cop_admissible: CoP of the admissible wrenches (2,), m.
         failure: why the torque is the fallback torque; None when it is not.
         memory: what the controller wants to be given at the next tick.
-        slack: what the goals have to do without, by name, m/s^2 and rad/s^2; empty where a law has no slacks.
+        slack: what the goals have to do without, by the names of `SLACKS`, m/s^2 and rad/s^2; empty where a law
+            has no slacks.
     """
 
     torque: np.ndarray

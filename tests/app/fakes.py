@@ -48,8 +48,8 @@ class FakeGui:
         self.widgets: dict[str, FakeHandle] = {}
         self.html: list[FakeHandle] = []
 
-    def add_html(self, content: str) -> FakeHandle:
-        self.html.append(FakeHandle(content=content, visible=True))
+    def add_html(self, content: str, visible: bool = True) -> FakeHandle:
+        self.html.append(FakeHandle(content=content, visible=visible))
         return self.html[-1]
 
     def add_slider(self, label: str, min: float, max: float, step: float, initial: float, **kw: Any) -> Any:

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import re
+
 import msgspec
+import numpy as np
 import pytest
 
 from momentum_lab.app.control_panel import Choices, ControlPanel, changed_gains
 from momentum_lab.app.playback import Playback
 from momentum_lab.control.computed_torque import ComputedTorqueGains
+from momentum_lab.control.controller import SLACKS
 from momentum_lab.control.gains import GainInfo, declared_gains
 from momentum_lab.events import LoadScenario, SelectRobot, SetDirections, SetGain, SetPriority
+from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
+from momentum_lab.session import Session
 from tests.app.fakes import FakeGui
 
 DECLARED = declared_gains(ComputedTorqueGains())
@@ -89,11 +95,30 @@ def test_changes_have_units():
 
 
 def test_directions_are_ticked_one_by_one_and_follow_the_truth(desk):
-    up, turn = desk.gui.widgets["linear, up (l z)"], desk.gui.widgets["angular, about forward (k x)"]
+    up, turn = desk.gui.widgets["lz: up"], desk.gui.widgets["kx: about forward"]
     assert up.value
     assert turn.value
     turn.set_by_person(False)
     up.set_by_person(False)
     assert desk.posted == [SetDirections("linear+ky+kz"), SetDirections("lx+ly+ky+kz")]
     desk.panel.follow(msgspec.structs.replace(desk.truth, controlled="lx"))
-    assert not desk.gui.widgets["linear, left (l y)"].value
+    assert not desk.gui.widgets["ly: left"].value
+
+
+def test_slacks_are_named_while_there_are_any(desk):
+    """Of the controller that has them, in mid-recovery: each with its size and unit; of no other."""
+    session = Session(Scenario("s", controller="slack-qp", pushes=(Push(force=217.0, start=0.0),)))
+    for _ in range(150):
+        session.tick()
+    (panel,) = [handle for handle in desk.gui.html if not handle.visible]
+    desk.panel.see(session.recording.latest)
+    assert panel.visible
+    shown = dict(re.findall(r"<td>([a-z ]+)</td><td[^>]*>([0-9.]+) ", panel.content))
+    assert list(shown) == list(SLACKS)
+    assert [float(number) for number in shown.values()] == pytest.approx(
+        np.abs(session.recording.latest["slack"]), abs=0.005
+    )
+    assert max(float(number) for number in shown.values()) > 0.1
+    desk.panel._next = 0.0
+    desk.panel.see(Playback(Scenario("stand")).latest)
+    assert not panel.visible
