@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, get_args
 
 import msgspec
 
+from momentum_lab.control.motion import ANGULAR_GOALS, AngularGoal
 from momentum_lab.errors import InputError, ScenarioError
 from momentum_lab.momentum.directions import directions
 from momentum_lab.paths import ASSETS
@@ -23,6 +24,7 @@ MAX_LEAN = 0.1
 MAX_DROP = 2.0
 ENGINES = ("pinocchio",)
 
+_CHOICES = {"engine": ENGINES, "angular_goal": ANGULAR_GOALS}
 _WORDS = {
     "float": "number",
     "int": "whole number",
@@ -45,6 +47,8 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         controller: a controller of the registry.
         controlled: the directions of momentum that are asked for, such as `all` or `linear+kz`.
         planner: what makes the momentum rates that are asked for, a row of Table 1.
+        motion: what the robot does besides standing; empty: nothing.
+        angular_goal: the angular momentum that is asked for: zero, or that of the motion by kinematics alone.
         stance: the feet the robot stands on; empty: all of them.
         com_outside: how far outside the outer edge of its only stance foot the CoM starts, m; None: the robot
             starts where it is to stand.
@@ -67,6 +71,8 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     controller: str = "computed-torque"
     controlled: str = "all"
     planner: str = "momentum"
+    motion: str = ""
+    angular_goal: AngularGoal = "zero"
     stance: tuple[str, ...] = ()
     com_outside: Annotated[float, msgspec.Meta(ge=-MAX_LEAN, le=MAX_LEAN)] | None = None
     drop_height: Annotated[float, msgspec.Meta(ge=0.0, le=MAX_DROP)] = 0.0
@@ -151,7 +157,7 @@ def _explained(rule: str, field: str, data: Any) -> tuple[object, str]:
     if "missing required field" in rule:
         return "nothing", rule.removeprefix("Object missing required ").replace("`", "")
     if "enum value" in rule:
-        return given, f"one of {', '.join(ENGINES if field == 'engine' else get_args(Shape))}"
+        return given, f"one of {', '.join(_CHOICES.get(field, get_args(Shape)))}"
     allowed = rule.removeprefix("Expected ").partition(", got")[0].replace("`", "")
     for plain, word in _WORDS.items():
         allowed = allowed.replace(plain, word)

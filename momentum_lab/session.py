@@ -15,6 +15,7 @@ from momentum_lab.control.controller import Controller, ControlOutput
 from momentum_lab.control.fallback import limp
 from momentum_lab.control.gains import with_gains
 from momentum_lab.control.handover import Handover
+from momentum_lab.control.motion import MovingGoal
 from momentum_lab.control.planner import OWN
 from momentum_lab.control.registry import check_planner, controller_entry
 from momentum_lab.control.standing import StandingGoal
@@ -114,6 +115,7 @@ class Session:
         home = self.robot.at(_starting_state(self.robot, scenario, None))
         self._standing_height = float(home.com_in_world[2])
         self._goal = StandingGoal(self.robot, home, self.stance)
+        self._motion = self._moving(home) if scenario.motion else None
         friction = self.robot.spec.friction if scenario.friction is None else scenario.friction
         self._ground = Ground.level(len(self.robot.soles), friction)
         self._scripted = tuple(self._checked_push(push) for push in scenario.pushes)
@@ -142,6 +144,15 @@ class Session:
     def dynamics(self) -> Dynamics:
         """The present state with everything computed."""
         return self.robot.at(self.state)
+
+    @property
+    def motion_reach(self) -> np.ndarray:
+        """How far the motion of the scenario moves each joint (na,), rad; zeros without one."""
+        return np.zeros(self.robot.na) if self._motion is None else self._motion.reach
+
+    def angular_momentum_asked(self, time: float) -> np.ndarray:
+        """k_d of the scenario's motion at a time, s (3,), N m s; zeros without one."""
+        return np.zeros(3) if self._motion is None else self._motion.angular_momentum(time)
 
     def post(self, event: SessionEvent) -> None:
         """Put an event into the inbox; it takes effect at the start of the next tick.
@@ -192,12 +203,26 @@ class Session:
         if self.fall is not None:
             return limp(self.robot, dynamics, self._memory)
         reference = self._goal.reference(dynamics, self.controlled, self.planner)
+        if self._motion is not None:
+            reference = self._motion.applied(reference, self.time)
         output = self._controller.compute(dynamics, reference, self.gains, self.priority, self._memory)
         if output.failure is not None:
             self.solver_failures += 1
             self.last_failure = output.failure
         torque = self._without_jump(output.torque)
         return output if torque is output.torque else replace(output, torque=torque)
+
+    def _moving(self, home: Dynamics) -> MovingGoal:
+        """The scenario's motion."""
+        scenario = self.scenario
+        return MovingGoal(
+            self.robot,
+            home,
+            self.stance,
+            scenario.motion,
+            scenario.angular_goal,
+            scenario.timestep,
+        )
 
     def _without_jump(self, torque: np.ndarray) -> np.ndarray:
         """The controller's torque; after a takeover it starts from the torque that was applied before."""

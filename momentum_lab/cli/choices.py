@@ -14,7 +14,18 @@ from momentum_lab.errors import GainError, InputError
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario, changed, load_scenario
 
-_FIELDS = ("robot", "controller", "controlled", "planner", "priority", "seconds", "engine", "seed")
+_FIELDS = (
+    "robot",
+    "controller",
+    "controlled",
+    "planner",
+    "motion",
+    "angular_goal",
+    "priority",
+    "seconds",
+    "engine",
+    "seed",
+)
 _DEFAULT_START = 0.5
 
 

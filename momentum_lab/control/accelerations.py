@@ -157,7 +157,7 @@ class AccelerationProgram:
             dynamics.sole_rotation,
             reference.sole_height,
             wrench,
-            reference.posture,
+            reference.posture_ahead(weights.damping / weights.stiffness if weights.stiffness else 0.0),
             self._free_joints,
             robot.position_lower,
             robot.position_upper,

@@ -24,6 +24,7 @@ class Reference:
         com_velocity: its desired velocity (3,), m/s.
         angular_momentum: desired angular momentum k_d about the CoM (3,), N m s.
         posture: desired joint angles (na,), rad.
+        posture_rate: how fast the desired joint angles change (na,), rad/s; None: they do not.
         pelvis_rotation: desired pelvis axes in the world (3, 3).
         stance: the feet that carry the robot, as indices.
         sole_height: height of the ground under each sole origin (F,), m.
@@ -41,6 +42,15 @@ class Reference:
     sole_height: np.ndarray
     controlled: Directions = ALL
     planner: str = "momentum"
+    posture_rate: np.ndarray | None = None
+
+    def posture_ahead(self, time: float) -> np.ndarray:
+        """The posture so much later if it keeps its rate (na,), rad.
+
+        A law k (theta_d - theta) - d theta' becomes k (theta_d - theta) + d (theta_d' - theta') when it is given
+        the posture d / k ahead.
+        """
+        return self.posture if self.posture_rate is None else self.posture + time * self.posture_rate
 
 
 @dataclass(frozen=True, slots=True)

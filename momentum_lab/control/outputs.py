@@ -132,6 +132,8 @@ def posture_output(
     """Angles of some joints."""
     error = reference.posture[joints] - dynamics.state.q[7 + joints]
     desired = spring.stiffness * error - spring.damping * dynamics.state.v[6 + joints]
+    if reference.posture_rate is not None:
+        desired += spring.damping * reference.posture_rate[joints]
     jacobian = np.zeros((len(joints), len(dynamics.state.v)))
     jacobian[np.arange(len(joints)), 6 + joints] = 1.0
     return Output("posture", jacobian, np.zeros(len(joints)), desired, weight)

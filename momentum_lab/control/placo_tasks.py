@@ -122,7 +122,8 @@ class PlacoTasks:
         self._com.mask.set_axises(axes(reference.controlled)[0], "task")
         self._com.target_world, self._com.dtarget_world = reference.com, reference.com_velocity
         self._pelvis.R_world_frame = reference.pelvis_rotation
-        self._posture.set_joints(dict(zip(self.robot.joint_names, reference.posture.tolist(), strict=True)))
+        posture = reference.posture_ahead(_lead(laws.posture))
+        self._posture.set_joints(dict(zip(self.robot.joint_names, posture.tolist(), strict=True)))
         _obey(self._com, laws.com)
         _obey(self._pelvis, laws.pelvis)
         _obey(self._posture, laws.posture)
@@ -165,6 +166,11 @@ class PlacoTasks:
         # PlaCo applies this one to the lateral and the normal force.
         contact.weight_tangentials = 0.0
         return contact
+
+
+def _lead(law: Law) -> float:
+    """How far ahead a moving posture has to be for the law to follow it, s."""
+    return law.damping / law.stiffness if law.stiffness else 0.0
 
 
 def _obey(task: Any, law: Law) -> None:

@@ -166,6 +166,8 @@ class ResolvedMomentum:
         """The set-point one step further along the rates of Eq. 25."""
         stay = np.zeros(self.robot.nv)
         stay[6:] = gains.posture_rate * (reference.posture - memory.q[7:])
+        if reference.posture_rate is not None:
+            stay[6:] += reference.posture_rate
         goal = MomentumGoal(
             self.desired_momentum(dynamics, reference, gains, memory.q), reference.controlled, stay
         )

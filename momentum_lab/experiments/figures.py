@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from momentum_lab.errors import InputError
-from momentum_lab.experiments import fig1, fig4, fig5, fig7, fig8, fig9, flight, table1
+from momentum_lab.experiments import arm_swing, fig1, fig4, fig5, fig7, fig8, fig9, flight, kick, table1
 from momentum_lab.experiments.claims import Figure
 
 FIGURES: dict[str, Figure] = {
     figure.name: figure
     for figure in (
+        arm_swing.FIGURE,
         fig1.FIGURE,
         fig4.FIGURE,
         fig5.FIGURE,
@@ -16,6 +17,7 @@ FIGURES: dict[str, Figure] = {
         fig8.FIGURE,
         fig9.FIGURE,
         flight.FIGURE,
+        kick.FIGURE,
         table1.FIGURE,
     )
 }

@@ -82,6 +82,14 @@ def pelvis_turn(session: Session) -> np.ndarray:
     return np.array([pin.log3(rotation @ axes[0].T) for rotation in axes])
 
 
+def motion_done(session: Session) -> np.ndarray:
+    """How far the joints of the scenario's motion are on their way (n, joints): 1 is all of it."""
+    reach = session.motion_reach
+    moving = np.flatnonzero(reach)
+    angles = session.recording.column("q")[:, 7 + moving]
+    return np.asarray((angles - angles[0]) / reach[moving])
+
+
 def com_outside_goal(session: Session) -> np.ndarray:
     """CoM minus the mean of the stance soles' centres, horizontal (n, 2), m: minus the error of Eq. 42.
 

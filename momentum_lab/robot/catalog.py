@@ -73,6 +73,7 @@ class RobotSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         push_bodies: names on the screen -> links that may be pushed.
         friction: Coulomb coefficient between sole and ground.
         armature: patterns of joint names -> rotor inertia seen at the joint, kg m^2; the later pattern wins.
+        motions: name of a motion -> patterns of joint names -> how far they go in it, rad.
         fall_points: link -> points in its frame that may hit the ground, m.
         sources: where each number comes from, in words.
     """
@@ -88,6 +89,7 @@ class RobotSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     push_bodies: dict[str, str]
     friction: Annotated[float, msgspec.Meta(gt=0.0, le=2.0)] = 0.7
     armature: dict[str, float] = {}
+    motions: dict[str, dict[str, float]] = {}
     fall_points: dict[str, tuple[Point, ...]] = {}
     sources: dict[str, str] = {}
 

@@ -37,5 +37,5 @@ def test_every_table_is_rectangular_and_says_its_units(name: str) -> None:
 
 
 def test_unknown_figure_lists_the_known_ones() -> None:
-    with pytest.raises(InputError, match="figure: got fig99; allowed: one of fig1, "):
+    with pytest.raises(InputError, match="figure: got fig99; allowed: one of arm-swing, fig1, "):
         figure_named("fig99")

@@ -1,0 +1,108 @@
+"""Motions: smooth courses, joints from the robot's file, and the angular momentum that belongs to them."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from momentum_lab.control.motion import MOTIONS, MovingGoal
+from momentum_lab.control.registry import CONTROLLERS
+from momentum_lab.errors import InputError, ScenarioError
+from momentum_lab.robot.state import State
+from momentum_lab.scenario import Scenario, changed
+from momentum_lab.session import Session
+from tests.conftest import assert_close
+from tests.control.situations import BOTH, goal, home
+
+DT = 1e-3
+STANCE = {"kick": (0,), "arm-swing": BOTH}
+
+
+def moving(robot, name, angular_goal="zero") -> MovingGoal:
+    stance = STANCE[name]
+    return MovingGoal(robot, home(robot, stance), stance, name, angular_goal, DT)
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_the_rate_is_the_slope_of_the_way_and_nothing_jumps(name):
+    course = MOTIONS[name].course
+    times = np.arange(0.0, 6.0, DT)
+    way, rate = np.array([course(time) for time in times]).T
+    assert_close(rate[1:-1], (way[2:] - way[:-2]) / (2.0 * DT), 5e-4)
+    assert np.abs(np.diff(rate)).max() < 0.1  # one tick of 100 1/s^2
+    assert (way[times <= 0.5] == 0.0).all()
+    assert way.max() == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_in_full_swing_it_repeats_itself(name):
+    motion = MOTIONS[name]
+    for time in np.arange(2.0, 4.0, 0.0137):
+        assert_close(np.array(motion.course(time + motion.period)), np.array(motion.course(time)), 1e-9)
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_only_joints_of_the_robots_file_move(robot, name):
+    dynamics = home(robot, STANCE[name])
+    still = goal(robot, dynamics, STANCE[name])
+    moved = moving(robot, name).applied(still, 0.73)
+    way, rate = MOTIONS[name].course(0.73)
+    reach = moving(robot, name).reach
+    assert_close(moved.posture, still.posture + way * reach, 1e-12)
+    assert_close(moved.posture_rate, rate * reach, 1e-12)
+    assert_close(moved.angular_momentum, np.zeros(3), 0.0)
+    patterns = robot.spec.motions[name]
+    assert 0 < np.count_nonzero(reach) <= 2 * len(patterns)
+    assert set(np.abs(reach[reach != 0.0])) == {abs(angle) for angle in patterns.values()}
+    assert dataclasses.replace(moved, posture=still.posture).com is still.com
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_the_reference_goal_is_the_motions_own_momentum(robot, name):
+    """k_d by Pinocchio's map at the same joint rates, when the body may go along as kinematics wants it."""
+    zero, reference = moving(robot, name), moving(robot, name, "reference")
+    assert_close(zero.angular_momentum(1.234), np.zeros(3), 0.0)
+    assert_close(reference.angular_momentum(0.4), np.zeros(3), 1e-9)
+    found = np.array([reference.angular_momentum(time) for time in np.arange(0.5, 2.4, 0.01)])
+    assert np.abs(found).max() > 0.2
+    period = MOTIONS[name].period
+    assert_close(reference.angular_momentum(40.0), reference.angular_momentum(40.0 + period), 1e-12)
+    # With everything but the joints of the motion held, k would be A_G v; the body gives way to it a little.
+    dynamics = home(robot, STANCE[name])
+    time = 0.5 + (0.25 * 0.7 if name == "kick" else 1.5)
+    v = np.concatenate([np.zeros(6), MOTIONS[name].course(time)[1] * zero.reach])
+    alone = robot.at(State(dynamics.state.q, v)).momentum[3:]
+    assert reference.angular_momentum(time) @ alone > 0.0
+
+
+@pytest.mark.parametrize("controller", CONTROLLERS)
+@pytest.mark.parametrize(("name", "stance", "ticks"), [("kick", ("left",), 1200), ("arm-swing", (), 1800)])
+def test_every_controller_follows_smoothly(robot, controller, name, stance, ticks):
+    """The joints get there, the robot stands, and no torque jumps by a tenth of its limit."""
+    session = Session(
+        Scenario("m", robot=robot.spec.name, controller=controller, motion=name, stance=stance, seconds=2.0),
+        robot,
+    )
+    for _ in range(ticks):
+        session.tick()
+    joints = np.flatnonzero(session.motion_reach)
+    angles = session.recording.column("q")[:, 7 + joints]
+    way = (angles - angles[0]) / session.motion_reach[joints]
+    assert way.max() > 0.6
+    assert session.fall is None
+    assert session.solver_failures == 0
+    jumps = np.abs(np.diff(session.recording.column("torque"), axis=0)) / robot.effort_limit
+    assert jumps[5:].max() < 0.1
+
+
+def test_what_cannot_be_done_is_said(talos):
+    with pytest.raises(InputError, match=r"^motion: got dance; allowed: one of kick, arm-swing$"):
+        Session(Scenario("m", motion="dance"), talos)
+    with pytest.raises(
+        InputError, match=r"^motion: got kick; allowed: a motion that the file of romeo describes"
+    ):
+        Session(Scenario("m", robot="romeo", motion="kick"))
+    with pytest.raises(ScenarioError, match=r"^angular_goal: got big; allowed: one of zero, reference$"):
+        changed(Scenario("m"), angular_goal="big")
