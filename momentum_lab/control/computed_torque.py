@@ -159,8 +159,8 @@ class ComputedTorque:
     def _desired_rate(
         self, dynamics: Dynamics, reference: Reference, gains: ComputedTorqueGains
     ) -> np.ndarray:
-        """[dl_d; dk_d] of Eqs. 37 and 38 (6,), N and N m."""
-        return desired_momentum_rate(
+        """[dl_d; dk_d] of Eqs. 37 and 38 (6,), N and N m, with the rate of a k_d that moves."""
+        rate = desired_momentum_rate(
             self.robot.mass,
             dynamics,
             reference,
@@ -169,6 +169,9 @@ class ComputedTorque:
             gains.angular_damping,
             gains.pelvis_stiffness,
         )
+        if reference.angular_momentum_rate is not None:
+            rate[3:] += reference.angular_momentum_rate
+        return rate
 
     def _balance(
         self,

@@ -23,6 +23,7 @@ class Reference:
         com: desired centre of mass r_d in the world (3,), m.
         com_velocity: its desired velocity (3,), m/s.
         angular_momentum: desired angular momentum k_d about the CoM (3,), N m s.
+        angular_momentum_rate: how fast k_d changes (3,), N m; None: it does not.
         posture: desired joint angles (na,), rad.
         posture_rate: how fast the desired joint angles change (na,), rad/s; None: they do not.
         pelvis_rotation: desired pelvis axes in the world (3, 3).
@@ -43,6 +44,7 @@ class Reference:
     controlled: Directions = ALL
     planner: str = "momentum"
     posture_rate: np.ndarray | None = None
+    angular_momentum_rate: np.ndarray | None = None
 
     def posture_ahead(self, time: float) -> np.ndarray:
         """The posture so much later if it keeps its rate (na,), rad.

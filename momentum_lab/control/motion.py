@@ -113,7 +113,14 @@ class MovingGoal:
             posture=reference.posture + way * self.reach,
             posture_rate=rate * self.reach,
             angular_momentum=self.angular_momentum(time),
+            angular_momentum_rate=self._angular_rate(time),
         )
+
+    def _angular_rate(self, time: float) -> np.ndarray:
+        """dk_d at a time, s (3,), N m: what a goal that moves needs besides Eq. 37, or k would lag behind."""
+        dt = self._timestep
+        ahead, behind = self.angular_momentum(time + dt), self.angular_momentum(max(0.0, time - dt))
+        return np.asarray((ahead - behind) / (2.0 * dt))
 
     def angular_momentum(self, time: float) -> np.ndarray:
         """k_d at a time, s (3,), N m s; behind the ticks that were looked at it repeats the last period."""

@@ -145,8 +145,10 @@ class WholeBodyQP:
         return stance_output(self.robot, dynamics, motion, x, carrying, desired, slack={})
 
     def desired_rate(self, dynamics: Dynamics, reference: Reference, gains: WholeBodyGains) -> np.ndarray:
-        """[dl_d; dk_d] (6,), N and N m: Eqs. 37 and 38, the regulator's, or a mean of both."""
+        """[dl_d; dk_d] (6,), N and N m: Eqs. 37 and 38, the regulator's, or a mean of both; dk_d as it moves."""
         upright = desired_angular_rate(dynamics, reference, 0.0, gains.pelvis_stiffness)
+        if reference.angular_momentum_rate is not None:
+            upright += reference.angular_momentum_rate
         rate = np.concatenate([np.zeros(3), upright])
         if gains.lqr_share < 1.0:
             linear = desired_linear_rate(

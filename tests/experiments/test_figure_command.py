@@ -17,8 +17,8 @@ Output = pytest.CaptureFixture[str]
 @pytest.mark.parametrize(
     ("words", "start"),
     [
-        ("figure", "figure: got nothing; allowed: one of fig1, "),
-        ("figure fig99 --out x", "figure: got fig99; allowed: one of fig1, "),
+        ("figure", "figure: got nothing; allowed: one of arm-swing, "),
+        ("figure fig99 --out x", "figure: got fig99; allowed: one of arm-swing, "),
         ("figure fig8", "--out: got nothing; allowed: a folder for the three files"),
         ("figure fig8 --out", "--out: got nothing; allowed: a value after it"),
         ("figure fig8 --out /dev/null/x", "--out: got /dev/null/x; allowed: a folder that can be written ("),
