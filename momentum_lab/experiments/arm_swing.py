@@ -35,7 +35,7 @@ def spin(session: Session) -> np.ndarray:
 
 
 def unmet(session: Session) -> np.ndarray:
-    """k minus what is asked for (n, 3), N m s."""
+    """What k has more than is asked for (n, 3), N m s."""
     asked = np.array([session.angular_momentum_asked(time) for time in times(session)])
     return np.asarray(session.recording.column("momentum")[:, 3:] - asked)
 
