@@ -42,7 +42,7 @@ MEASURES = {
 STEPS = (
     lab.Prose("The robot weighs {weight}, and standing still the ground carries exactly that: {carried}."),
     lab.Choice(
-        "A push of {push} from behind ends. Just after it, which way does the ground push the feet?",
+        "A push of {push}, mostly from behind, ends. Just after it, which way does the ground push the feet?",
         (
             lab.Option("Straight up, as before", lambda m: abs(m["brake"]) < 1.0),
             lab.Option("Up and forward: the robot is still going there", lambda m: m["brake"] >= 1.0),

@@ -16,7 +16,7 @@ PUSH = lab.Push(velocity_change=0.03, duration=0.1, start=0.2)
 def small_push(zeta):
     """Gamma_21 = 2 zeta sqrt(Gamma_22)."""
     gains = {"linear_stiffness": STIFFNESS, "linear_damping": 2.0 * zeta * STIFFNESS**0.5}
-    return lab.Run("stand", {"seconds": 2.6, "pushes": (PUSH,), "gains": gains})
+    return lab.Run("stand", {"seconds": 2.1, "pushes": (PUSH,), "gains": gains})
 
 
 RUNS = {"loose": small_push(0.2), "even": small_push(1.0), "tight": small_push(2.5)}

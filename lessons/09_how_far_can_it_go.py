@@ -12,7 +12,7 @@ from momentum_lab.momentum.pendulum import pendulum_frequency, pendulum_impulse_
 
 def push(speed, priority):
     pushes = (lab.Push(velocity_change=speed, duration=0.1, start=0.2),)
-    return lab.Run("fig7", {"pushes": pushes, "priority": priority, "seconds": 2.0})
+    return lab.Run("fig7", {"pushes": pushes, "priority": priority, "seconds": 1.8})
 
 
 RUNS = {"turning": push(0.44, 0.0), "stiff": push(0.44, 1.0), "too_far": push(0.6, 0.0)}
