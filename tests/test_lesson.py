@@ -111,6 +111,8 @@ def test_mathml_is_well_formed_and_carries_numbers_and_units() -> None:
     plain = "".join(tree.itertext()).replace("\u2062", "")
     assert plain.startswith("k˙y1.3 N=")
     assert "Γ21" in plain
+    rate = Equation("dxi_x = delta", {"dxi_x": symbol("x"), "delta": symbol("d")}, 1.0, "N")
+    assert "".join(ElementTree.fromstring(mathml(rate, {})).itertext()) == "ξ˙x=δ"
     assert "r¨x" in plain
     for kind in ("mfrac", "msqrt", "msup", "munder", "mover", "msub"):
         assert tree.find(f".//{MATH}{kind}") is not None
@@ -214,6 +216,9 @@ BROKEN = [
     ("field without a measure", ("{way} and", "{weg} and"), "{weg}", "got {weg}; allowed: a measure: push, way, end"),
     ("number in the prose", ("harder and harder", "with 90 N"), "90 N", "got 90; allowed: numbers from the runs"),
     ("unknown symbol", ("dl_x = f_x", "dl_x = f_y"), "equation=lab", "got symbol f_y"),
+    ("return outside", ("RUNS =", "return\nRUNS ="), "return", r"Python \('return' outside function"),
+    ("leaves", ("RUNS =", "exit()\nRUNS ="), "exit()", "got SystemExit"),
+    ("unknown robot", ("RUNS =", 'ROBOTS = ("tallos",)\nRUNS ='), "ROBOTS", "a tuple of g1, icub, romeo, talos"),
     ("wrong import", ("import com_moved", "import com_mooved"), "import com_mooved", "got ImportError"),
     ("no question", ("\n\nYou push a robot from behind. Where does it stop?\n", ""), "Leaning in", "got no question"),
 ]  # fmt: skip
@@ -247,6 +252,28 @@ def test_measure_with_an_error_is_told_when_it_is_played(tmp_path: Path, g1: Rob
     with pytest.raises(
         LessonError, match=rf"01_leaning_in\.py:{line_of(path, 'pusch')}: got KeyError: 'pusch'"
     ):
+        play_lesson(lesson, g1)
+
+
+@pytest.mark.parametrize(
+    ("change", "place", "words"),
+    [
+        (('[-1, 0], "mm"', '[-1, 0:], "mm"'), '"end": lab', "got TypeError"),
+        (('[-1, 0], "mm", ".1f"', '[-1, 0], "mm", ".1q"'), '"end": lab', "got ValueError"),
+        (
+            ('"f_x": q.FORCE_X', '"f_x": lab.Symbol(q.recorded("fore"), "N", "")'),
+            "The force",
+            "got KeyError: 'fore'",
+        ),
+        (('m["end"] <= 0.5', 'm["ent"] <= 0.5'), 'm["ent"]', "got KeyError: 'ent'"),
+    ],
+)
+def test_error_that_shows_when_it_is_played_is_told_like_every_other(
+    tmp_path: Path, g1: RobotModel, change: tuple[str, str], place: str, words: str
+) -> None:
+    path = written(tmp_path, change)
+    lesson = replace(load_lesson(path), runs={"push": Run("fig7", {"seconds": 0.01})})
+    with pytest.raises(LessonError, match=re.escape(f"{path.name}:{line_of(path, place)}: {words}")):
         play_lesson(lesson, g1)
 
 

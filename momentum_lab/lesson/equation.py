@@ -197,9 +197,10 @@ def _bracketed(node: ast.expr, rank: int, labels: Mapping[str, str], text: str) 
 def _symbol(name: str) -> str:
     """A name as MathML: dots for derivatives, a Greek letter, an index."""
     base, _, index = name.partition("_")
-    found = re.fullmatch(r"(d{0,2})([A-Za-z])", base) if base not in _GREEK else None
-    dots, letter = (found[1], found[2]) if found else ("", _GREEK.get(base, base))
-    written = f"<mi>{escape(letter)}</mi>"
+    letters = "|".join(("[A-Za-z]", *_GREEK))
+    found = re.fullmatch(rf"(d{{0,2}})({letters})", base)
+    dots, letter = (found[1], found[2]) if found and base not in _GREEK else ("", base)
+    written = f"<mi>{escape(_GREEK.get(letter, letter))}</mi>"
     if dots:
         written = f"<mover><mrow>{written}</mrow><mo>{_DOTS[dots]}</mo></mover>"
     return f"<msub>{written}<mi>{escape(index)}</mi></msub>" if index else written

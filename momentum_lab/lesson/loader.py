@@ -12,7 +12,7 @@ from typing import Any
 
 from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.registry import controller_entry
-from momentum_lab.errors import InputError, LessonError
+from momentum_lab.errors import InputError, LabError, LessonError
 from momentum_lab.lesson.parts import (
     CONTROLS,
     Bound,
@@ -30,6 +30,7 @@ from momentum_lab.lesson.parts import (
 )
 from momentum_lab.lesson.text import check_words
 from momentum_lab.paths import LESSONS
+from momentum_lab.robot.catalog import robot_names
 
 _KINDS: dict[str, tuple[type, ...]] = {
     "RUNS": (Run,),
@@ -94,11 +95,11 @@ def load_lesson(path: Path) -> Lesson:
     tree = _tree(path)
     title, question = headline(path)
     names: dict[str, Any] = {"__name__": path.stem, "__file__": str(path)}
-    with located(path):
+    with located(path, ""):
         exec(compile(tree, str(path), "exec"), names)
     found = {name: _parts(path, tree, name, names) for name in _KINDS}
     number = int(path.stem.partition("_")[0]) if re.match(r"\d+_", path.name) else 0
-    robots = tuple(names.get("ROBOTS", ("talos", "g1")))
+    robots = _robots(path, tree, names.get("ROBOTS", ("talos", "g1")))
     lesson = Lesson(
         path,
         number,
@@ -115,18 +116,28 @@ def load_lesson(path: Path) -> Lesson:
 
 
 @contextmanager
-def located(path: Path) -> Iterator[None]:
-    """Whatever goes wrong in a lesson's script, as an error that names its file and line."""
+def located(path: Path, words: str) -> Iterator[None]:
+    """Whatever goes wrong in a lesson's script, as an error that names its file and line.
+
+    Args:
+        path: the script.
+        words: a text of the script that stands where the cause is, if what fails was called from elsewhere.
+
+    Raises:
+        LessonError: something went wrong.
+        LabError: something that is not the script's fault went wrong.
+    """
     try:
         yield
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         lines = [
             frame.lineno or 1
             for frame in traceback.extract_tb(error.__traceback__)
             if frame.filename == str(path)
         ]
-        if not lines:
+        if not lines and (isinstance(error, LabError) or not words):
             raise
+        lines = lines or [_line_of_text(path, _tree(path), words, words)]
         if isinstance(error, InputError):
             raise _wrong(path, lines[-1], f"{error.argument} {error.given}", error.allowed) from error
         given = f"{type(error).__name__}: {error}"
@@ -135,7 +146,10 @@ def located(path: Path) -> Iterator[None]:
 
 def _tree(path: Path) -> ast.Module:
     try:
-        return ast.parse(path.read_text(encoding="utf-8"), str(path))
+        tree = ast.parse(path.read_text(encoding="utf-8"), str(path))
+        # A few errors are found by the compiler only, such as a return outside a function.
+        compile(tree, str(path), "exec")
+        return tree
     except OSError as error:
         raise InputError("lesson", path, f"a file that can be read ({error.strerror})") from error
     except SyntaxError as error:
@@ -159,6 +173,14 @@ def _parts(path: Path, tree: ast.Module, name: str, names: dict[str, Any]) -> An
         if not isinstance(part, _KINDS[name]):
             raise _wrong(path, line, repr(part), allowed)
     return parts
+
+
+def _robots(path: Path, tree: ast.Module, robots: Any) -> tuple[str, ...]:
+    known = robot_names()
+    if type(robots) is not tuple or not robots or any(robot not in known for robot in robots):
+        given, allowed = f"ROBOTS = {robots!r}", f"ROBOTS = a tuple of {', '.join(known)}"
+        raise _wrong(path, _line_of_name(tree, "ROBOTS"), given, allowed)
+    return robots
 
 
 def _each(parts: dict[str, Any] | tuple[Any, ...]) -> Iterable[Any]:

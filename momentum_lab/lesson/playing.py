@@ -79,12 +79,13 @@ def play_lesson(
     """
     robot = robot or RobotModel.named(lesson.robots[0])
     runs: dict[str, Session] = {}
-    with located(lesson.file):
-        for label, run in lesson.runs.items():
+    for label, run in lesson.runs.items():
+        with located(lesson.file, label):
             runs[label] = _played(run, robot, _part_of(len(runs), len(lesson.runs), proceed))
-        values = {name: _finite(measure.value(runs)) for name, measure in lesson.measures.items()}
-        claims = tuple(_claims(lesson, runs, values))
-    return Played(lesson, runs, values, claims)
+    values = {name: _measured(lesson, name, runs) for name in lesson.measures}
+    asserted = [claim for each in lesson.claims for claim in _judged(each, lesson, runs, values)]
+    implied = [claim for step in lesson.steps for claim in _implied(step, lesson, runs, values)]
+    return Played(lesson, runs, values, (*asserted, *implied))
 
 
 def right_options(step: Choice, values: Values) -> list[int]:
@@ -94,6 +95,11 @@ def right_options(step: Choice, values: Values) -> list[int]:
 
 def told(step: Step, played: Played) -> dict[str, Any]:
     """A step as plain data: its kind, its words with all numbers, and what belongs to it."""
+    with located(played.lesson.file, step.text):
+        return _told(step, played)
+
+
+def _told(step: Step, played: Played) -> dict[str, Any]:
     lesson, values = played.lesson, played.values
     record: dict[str, Any] = {"kind": type(step).__name__.lower()}
     record["text"] = spoken(step.text, lesson.measures, values)
@@ -157,24 +163,26 @@ def _part_of(done: int, count: int, proceed: Callable[[float], bool]) -> Callabl
     return lambda fraction: proceed((done + fraction) / count)
 
 
-def _finite(value: Value) -> Value:
-    """A plain number or words."""
-    return value if isinstance(value, str) else float(value)
+def _measured(lesson: Lesson, name: str, runs: Runs) -> Value:
+    """What a measure is: words, or a number that can be written as it says."""
+    measure = lesson.measures[name]
+    with located(lesson.file, name):
+        value = measure.value(runs)
+        number = value if isinstance(value, str) else float(value)
+        with_unit(measure, number)
+    return number
 
 
-def _claims(lesson: Lesson, runs: Runs, values: Values) -> Iterator[Claim]:
-    """The claims of the author, and those that every step makes by itself."""
-    for asserted in lesson.claims:
-        yield from _judged(asserted, lesson, runs, values)
-    for step in lesson.steps:
+def _implied(step: Step, lesson: Lesson, runs: Runs, values: Values) -> Iterator[Claim]:
+    """What a step claims by itself: one answer is right, a number is in its range, an equation holds."""
+    with located(lesson.file, step.text):
         match step:
             case Choice(text=text):
                 count = len(right_options(step, values))
                 asked = spoken(text, lesson.measures, values)
                 yield Claim(f"one answer is right: {asked}", float(count), "1 option", count == 1)
             case Number(measure=name, low=low, high=high):
-                unit = lesson.measures[name].unit
-                value = float(values[name])
+                value, unit = float(values[name]), lesson.measures[name].unit
                 inside = low <= value <= high
                 yield Claim(f"{name} can be predicted", value, f"from {low:g} to {high:g} {unit}", inside)
             case Explain(run=run, equation=equation):
