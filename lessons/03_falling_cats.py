@@ -3,6 +3,8 @@
 In the air there is nothing to push against. Can a robot still turn its body?
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 import momentum_lab.lesson as lab
@@ -23,6 +25,7 @@ def most_spin(session):
     return float(np.linalg.norm(session.recording.column("momentum")[:, 3:], axis=1).max())
 
 
+@lru_cache(2)
 def shares(session):
     """Angular momentum about y that comes from the whole body's motion, and from the joints' (n, 2), N m s."""
     column, found = session.recording.column, []

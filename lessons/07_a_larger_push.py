@@ -10,7 +10,7 @@ from momentum_lab.experiments.measured import com_moved, rate_gap, saturated, ti
 from momentum_lab.lesson import quantities as q
 
 RUNS = {
-    "bend": lab.Run("fig7", {"priority": 0.0, "seconds": 2.0}),
+    "bend": lab.Run("fig7", {"priority": 0.0, "seconds": 1.8}),
     "upright": lab.Run("fig7", {"priority": 1.0}),
 }
 EARLY = 0.2  # of the time after the push began: before anything is decided, s

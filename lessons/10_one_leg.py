@@ -10,7 +10,7 @@ from momentum_lab.experiments.fig9 import body_roll, com_slack, lateral_cop, out
 from momentum_lab.experiments.measured import com_outside_goal, times
 from momentum_lab.lesson import quantities as q
 
-RUNS = {"com": lab.Run("fig9", {"seconds": 3.0}), "body": lab.Run("fig9", {"priority": 1.0, "seconds": 2.0})}
+RUNS = {"com": lab.Run("fig9", {"seconds": 2.6}), "body": lab.Run("fig9", {"priority": 1.0, "seconds": 2.0})}
 
 
 def pinned(session):

@@ -30,6 +30,12 @@ def roll(session):
     return float(turned[np.abs(turned).argmax()])
 
 
+def left(session):
+    """The part of the largest spin that is there at the end, %."""
+    spin = np.abs(session.recording.column("momentum")[:, 3])
+    return 100.0 * float(spin[-1] / spin.max())
+
+
 MEASURES = {
     "push": lab.Measure(lambda runs: runs["push"].pushes[0].force, "N"),
     "cmp": lab.Measure(
@@ -40,6 +46,7 @@ MEASURES = {
     "spin": lab.Measure(
         lambda runs: -float(runs["push"].recording.column("momentum")[:, 3].min()), "N m s", ".2f"
     ),
+    "left": lab.Measure(lambda runs: left(runs["push"]), "%"),
     "foot": lab.Measure(
         lambda runs: 1e3 * float(np.linalg.norm(swing_foot(runs["push"]), axis=1).max()), "mm"
     ),
@@ -71,7 +78,8 @@ STEPS = (
     lab.Explain(
         "To stop the CoM, the ground has to push to the right, harder than its place under the foot allows. So the "
         "CMP goes {cmp} beyond the edge, while the CoP stays {cop} inside. The gap turns body and leg to the left "
-        "(Eq. 23): they take a spin of {spin}, and give it back later. The CoM ends {end} from its place.",
+        "(Eq. 23): they take a spin of {spin}, of which {left} are left in the end. The CoM ends {end} from its "
+        "place.",
         "push",
         0.35,
         lab.Equation(
@@ -91,6 +99,7 @@ CLAIMS = (
     lab.Bound("the CoP does not", "cop", low=0.0),
     lab.Bound("the body rolls with the push", "roll", low=2.0),
     lab.Bound("and takes the spin", "spin", low=0.2),
+    lab.Bound("and gives it back", "left", high=10.0),
     lab.Bound("the free foot swings", "foot", low=10.0),
     lab.Bound("upward too", "foot_up", low=5.0),
     lab.Bound("the CoM comes back", "end", high=5.0),

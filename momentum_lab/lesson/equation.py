@@ -26,7 +26,7 @@ _GREEK = {
 }
 _DOTS = {"": "", "d": "˙", "dd": "¨"}
 _FUNCTIONS: dict[str, Callable[[np.ndarray], np.ndarray]] = {"sqrt": np.sqrt, "exp": np.exp, "abs": np.abs}
-_SIGNS = {ast.Add: ("+", np.add), ast.Sub: ("−", np.subtract), ast.Mult: ("\u2062", np.multiply)}
+_SIGNS = {ast.Add: ("+", np.add), ast.Sub: ("−", np.subtract), ast.Mult: ("⋅", np.multiply)}
 _RANK = {ast.Add: 1, ast.Sub: 1, ast.Mult: 2}
 _ALLOWED = "one '=' between names, numbers, + - * / **, brackets, sqrt, exp, abs"
 
@@ -207,4 +207,8 @@ def _symbol(name: str) -> str:
 
 
 def _labelled(symbol: str, label: str | None) -> str:
-    return symbol if label is None else f"<munder>{symbol}<mtext>{escape(label)}</mtext></munder>"
+    if label is None:
+        return symbol
+    # Figures under neighbours must not touch each other.
+    gap = '<mspace width="0.15em"/>'
+    return f"<mrow>{gap}<munder>{symbol}<mtext>{escape(label)}</mtext></munder>{gap}</mrow>"
