@@ -12,7 +12,7 @@ from momentum_lab.experiments.measured import push_end, times
 from momentum_lab.momentum.centroidal import link_by_link
 from momentum_lab.robot.state import State
 
-RUNS = {"push": lab.Run("fig8", {"seconds": 0.45})}
+RUNS = {"push": lab.Run("fig8", {"seconds": 0.35})}
 
 
 def states(session):
