@@ -5,6 +5,7 @@ LabError                 one clear line for a person; the command line prints it
 │   ├── RobotError       unknown robot, unreadable URDF or TOML, missing mesh or frame
 │   ├── ScenarioError    unknown or unreadable scenario, value out of range
 │   ├── GainError        unknown gain, value out of range
+│   ├── LessonError      a lesson's script has an error; the argument is its file and line
 │   └── ServerError      the app cannot start: port in use, host not available
 ├── SolverError          a quadratic program has no certified answer; carries the reason
 └── SimulationError      the state is not finite any more; the recording is kept
@@ -46,6 +47,10 @@ class ScenarioError(InputError):
 
 class GainError(InputError):
     """A gain that does not exist or is out of range."""
+
+
+class LessonError(InputError):
+    """A lesson's script with an error in it; the argument is its file and line."""
 
 
 class ServerError(InputError):

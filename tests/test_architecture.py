@@ -33,11 +33,10 @@ FLOORS: tuple[frozenset[str], ...] = (
             "headless",
             "summary",
             "provenance",
-            "lesson",
             "bench",
         }
     ),
-    frozenset({"experiments"}),
+    frozenset({"experiments", "lesson"}),
     frozenset({"app"}),
     frozenset({"cli", "__main__"}),
 )

@@ -128,7 +128,7 @@ BAD_VALUES = [
         "list: got cats; allowed: robots, controllers, planners, scenarios, lessons, figures, gains",
     ),
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
-    ("fly", "command: got fly; allowed: app, run, figure, list, equations, bench"),
+    ("fly", "command: got fly; allowed: app, run, lesson, figure, list, equations, bench"),
 ]
 
 
@@ -418,8 +418,8 @@ def test_list_of_lessons_is_in_their_order(
     monkeypatch.setattr(listing, "LESSONS", tmp_path)
     assert main(["list", "lessons", "--json"]) == 0
     lessons = [
-        {"name": "01_stand", "title": "Where is the CoP?"},
-        {"name": "02_push", "title": "What does a push do?"},
+        {"name": "01_stand", "number": 1, "title": "Where is the CoP?", "question": ""},
+        {"name": "02_push", "number": 2, "title": "What does a push do?", "question": "More."},
     ]
     assert json.loads(capsys.readouterr().out) == lessons
 

@@ -1,7 +1,7 @@
-"""The command line: momentum-lab app | run | figure | list | equations | bench.
+"""The command line: momentum-lab app | run | lesson | figure | list | equations | bench.
 
 Exit codes: 0 the command did what was asked (a robot that falls is a result, not an error), 1 something broke
-down on the way or a figure's claim or an equation does not hold, 2 bad input, 130 stopped by Ctrl+C. Bad
+down on the way or a figure's or lesson's claim or an equation does not hold, 2 bad input, 130 stopped by Ctrl+C. Bad
 input is one line on stderr and nothing on stdout: `momentum-lab: ARGUMENT: got GIVEN; allowed: ALLOWED`.
 """
 
@@ -69,6 +69,10 @@ def _imported(name: str) -> Callable[[Namespace], int]:
         from momentum_lab.cli.run import run
 
         return run
+    if name == "lesson":
+        from momentum_lab.cli.lesson import lesson
+
+        return lesson
     if name == "figure":
         from momentum_lab.cli.figure import figure
 

@@ -14,7 +14,7 @@ from momentum_lab.momentum.directions import directions
 from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
 from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 
-COMMANDS = ("app", "run", "figure", "list", "equations", "bench")
+COMMANDS = ("app", "run", "lesson", "figure", "list", "equations", "bench")
 KINDS = ("robots", "controllers", "planners", "scenarios", "lessons", "figures", "gains")
 _MAX_PORT = 65535
 _MAX_BENCH_SECONDS, _MAX_BENCH_MINUTES = 600.0, 60.0
@@ -137,6 +137,11 @@ def _parser() -> _Parser:
         ("app", "open the lab in the browser", _app_arguments),
         ("run", "run a scenario without a screen", _run_arguments),
         (
+            "lesson",
+            "a guided lesson: a question, a prediction, an answer that is measured",
+            _lesson_arguments,
+        ),
+        (
             "figure",
             "one of the chapter's figures: picture, numbers, and claims that are checked",
             _figure_arguments,
@@ -156,13 +161,22 @@ def _parser() -> _Parser:
 
 
 def _usage(command: str) -> str:
-    words = {"run": "run SCENARIO", "figure": "figure NAME --out DIR", "list": f"list {'|'.join(KINDS)}"}
+    words = {
+        "run": "run SCENARIO",
+        "lesson": "lesson NAME",
+        "figure": "figure NAME --out DIR",
+        "list": f"list {'|'.join(KINDS)}",
+    }
     return words.get(command, command)
 
 
 def _app_arguments(parser: _Parser) -> None:
     parser.add_argument("--scenario", default="stand", metavar="S", help="what to start with")
     _choice_arguments(parser)
+    _serving_arguments(parser)
+
+
+def _serving_arguments(parser: _Parser) -> None:
     parser.add_argument("--host", default="127.0.0.1", metavar="H", help="address to serve on")
     parser.add_argument(
         "--port",
@@ -249,6 +263,21 @@ def _choice_arguments(parser: _Parser) -> None:
     )
 
 
+def _lesson_arguments(parser: _Parser) -> None:
+    parser.add_argument(
+        "name", nargs="?", default="", metavar="NAME", help="a lesson's number, file or title"
+    )
+    parser.add_argument("--headless", action="store_true", help="play it without a browser")
+    parser.add_argument("--robot", metavar="R", help="a name, or a robot's .toml file")
+    parser.add_argument("--json", action="store_true", help="play it and print one JSON object")
+    _folder_argument(parser)
+    _serving_arguments(parser)
+
+
+def _folder_argument(parser: _Parser) -> None:
+    parser.add_argument("--lessons", metavar="DIR", help="a folder with lessons of your own")
+
+
 def _figure_arguments(parser: _Parser) -> None:
     parser.add_argument("name", nargs="?", default="", metavar="NAME", help="which figure, such as fig8")
     parser.add_argument("--robot", metavar="R", help="a name, or a robot's .toml file")
@@ -258,6 +287,7 @@ def _figure_arguments(parser: _Parser) -> None:
 def _list_arguments(parser: _Parser) -> None:
     parser.add_argument("kind", nargs="?", default="", metavar="|".join(KINDS), help="what to list")
     parser.add_argument("--controller", metavar="C", default="computed-torque", help="whose gains to list")
+    _folder_argument(parser)
     parser.add_argument("--json", action="store_true", help="print a JSON array")
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import ast
 from argparse import Namespace
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -16,6 +16,7 @@ from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.registry import CONTROLLERS, controller_entry
 from momentum_lab.errors import InputError
+from momentum_lab.lesson.loader import headline, lesson_files, lesson_folder
 from momentum_lab.paths import LESSONS
 from momentum_lab.robot.catalog import load_spec, robot_names
 from momentum_lab.scenario import load_scenario, scenario_names
@@ -34,7 +35,12 @@ def list_things(args: Namespace) -> int:
     """
     if args.kind not in KINDS:
         raise InputError("list", args.kind, ", ".join(KINDS))
-    things = gains(args.controller) if args.kind == "gains" else _LISTS[args.kind]()
+    if args.kind == "gains":
+        things = gains(args.controller)
+    elif args.kind == "lessons":
+        things = lessons(LESSONS if args.lessons is None else lesson_folder(args.lessons))
+    else:
+        things = _LISTS[args.kind]()
     if args.json:
         print(msgspec.json.encode(things).decode())
     elif things:
@@ -67,9 +73,18 @@ def scenarios() -> Things:
     return [{"name": name, "title": load_scenario(name).title} for name in scenario_names()]
 
 
-def lessons() -> Things:
-    """All lessons, in their order; the title is the first line of the lesson's docstring."""
-    return [{"name": path.stem, "title": _title(path.read_text())} for path in sorted(LESSONS.glob("*.py"))]
+def lessons(folder: Path) -> Things:
+    """All lessons of a folder, in their order.
+
+    Raises:
+        LessonError: a script cannot be read.
+    """
+    found = []
+    for path in lesson_files(folder):
+        title, question = headline(path)
+        number = int(path.stem.partition("_")[0])
+        found.append({"name": path.stem, "number": number, "title": title, "question": question})
+    return found
 
 
 def figures() -> Things:
@@ -102,14 +117,8 @@ _LISTS: dict[str, Callable[[], Things]] = {
     "controllers": controllers,
     "planners": planners,
     "scenarios": scenarios,
-    "lessons": lessons,
     "figures": figures,
 }
-
-
-def _title(source: str) -> str:
-    docstring = ast.get_docstring(ast.parse(source)) or ""
-    return docstring.partition("\n")[0]
 
 
 def _show(things: Things) -> None:

@@ -1,0 +1,129 @@
+"""A small push
+
+Pulled back like a spring and braked like a damper, a robot returns to its place. How hard should it brake?
+"""
+
+import numpy as np
+
+import momentum_lab.lesson as lab
+from momentum_lab.experiments.measured import com_moved, push_end, saturated, times
+from momentum_lab.lesson import quantities as q
+
+STIFFNESS = 60.0
+PUSH = lab.Push(velocity_change=0.03, duration=0.1, start=0.2)
+
+
+def small_push(zeta):
+    """Gamma_21 = 2 zeta sqrt(Gamma_22)."""
+    gains = {"linear_stiffness": STIFFNESS, "linear_damping": 2.0 * zeta * STIFFNESS**0.5}
+    return lab.Run("stand", {"seconds": 2.1, "pushes": (PUSH,), "gains": gains})
+
+
+RUNS = {"loose": small_push(0.2), "even": small_push(1.0), "tight": small_push(2.5)}
+
+
+def ratio(session):
+    """The damping ratio zeta."""
+    return session.gains.linear_damping / (2.0 * session.gains.linear_stiffness**0.5)
+
+
+def way(session):
+    """Way of the CoM, forward, mm."""
+    return 1e3 * com_moved(session)[:, 0]
+
+
+def back(runs, label):
+    """How long after the push the CoM is back for good, within a tenth of its farthest, s."""
+    moved = np.abs(way(runs[label]))
+    last = np.flatnonzero(moved > 0.1 * moved.max())[-1]
+    return float(times(runs[label])[last]) - push_end(runs[label])
+
+
+def overshoot(runs, label):
+    """How far it swings to the other side, as part of its farthest, %."""
+    moved = way(runs[label])
+    return 100.0 * float(max(0.0, -moved.min()) / moved.max())
+
+
+def lead(runs):
+    """How much earlier the one in the middle is back than both others, s."""
+    return min(back(runs, "loose"), back(runs, "tight")) - back(runs, "even")
+
+
+def outside(runs):
+    return float(sum(saturated(session).sum() for session in runs.values()))
+
+
+MEASURES = {
+    "push": lab.Measure(lambda runs: runs["even"].pushes[0].force, "N"),
+    "way": lab.Measure(lambda runs: float(way(runs["even"]).max()), "mm", ".1f"),
+    "outside": lab.Measure(outside, "ticks"),
+    "loose": lab.Measure(lambda runs: back(runs, "loose"), "s", ".2f"),
+    "even": lab.Measure(lambda runs: back(runs, "even"), "s", ".2f"),
+    "tight": lab.Measure(lambda runs: back(runs, "tight"), "s", ".2f"),
+    "lead": lab.Measure(lead, "s", ".2f"),
+    "swing": lab.Measure(lambda runs: overshoot(runs, "loose"), "%"),
+    "no_swing": lab.Measure(lambda runs: overshoot(runs, "even"), "%", ".1f"),
+    "ratios": lab.Measure(lambda runs: "{:.1f}, {:.1f} and {:.1f}".format(*map(ratio, runs.values()))),
+}
+
+STEPS = (
+    lab.Prose(
+        "A push of {push} moves the CoM by only {way}. The ground can give all that is wanted: the desired CoP was "
+        "outside on {outside}. Then balance is a spring, Gamma_22, and a damper, Gamma_21."
+    ),
+    lab.Choice(
+        "Three robots have the same spring and brake with damping ratios of {ratios}. "
+        "Which one is back first, for good?",
+        (
+            lab.Option(
+                "The loose one: nothing holds it up", lambda m: m["loose"] < min(m["even"], m["tight"])
+            ),
+            lab.Option("The one in the middle", lambda m: m["even"] < min(m["loose"], m["tight"])),
+            lab.Option("The one that brakes hardest", lambda m: m["tight"] < min(m["loose"], m["even"])),
+        ),
+    ),
+    lab.Number("How far does the loose one swing past its place, in % of its farthest?", "swing", 0, 100),
+    lab.Play(
+        "Push, change both gains, push again. Watch the CoM in the plot.",
+        "loose",
+        ("push", "linear_damping", "linear_stiffness"),
+    ),
+    lab.Compare(
+        "Back for good after {loose}, {even} and {tight}. The loose one swings past by {swing}, the one in the "
+        "middle by {no_swing}.",
+        ("loose", "even", "tight", "swing"),
+    ),
+    lab.Explain(
+        "The robot really is that spring: its CoM, one point of a body with dozens of joints, obeys Eq. 38. "
+        "The damping ratio is Gamma_21 over twice the root of Gamma_22.",
+        "loose",
+        0.5,
+        lab.Equation(
+            "ddr_x = Gamma_22 * (r_d - r_x) - Gamma_21 * dr_x",
+            {
+                "ddr_x": lab.Symbol(
+                    lambda s: q.FORCE_X.values(s) / s.robot.mass, "m/s^2", "by the forces", ".3f"
+                ),
+                "Gamma_22": lab.Symbol(lambda s: s.gains.linear_stiffness, "1/s^2", "spring"),
+                "Gamma_21": lab.Symbol(lambda s: s.gains.linear_damping, "1/s", "damper", ".1f"),
+                "r_d": lab.Symbol(lambda s: q.COM_X.values(s)[0], "m", "its place", ".4f"),
+                "r_x": q.COM_X,
+                "dr_x": q.COM_SPEED_X,
+            },
+            within=0.01,
+            unit="m/s^2",
+            share=0.99,
+            since=0.31,
+        ),
+    ),
+)
+
+CLAIMS = (
+    *(lab.Stands(label, f"the {label} robot") for label in RUNS),
+    lab.Bound("everything is admissible", "outside", high=0.0),
+    # A spring with a damper, kicked from rest, swings back by exp(-pi zeta / sqrt(1 - zeta^2)).
+    lab.Bound("the loose one swings back as far as a spring and damper do", "swing", low=49.7, high=55.7),
+    lab.Bound("the one in the middle is back first", "lead", low=0.5),
+    lab.Bound("critically damped it does not swing", "no_swing", high=2.0),
+)
