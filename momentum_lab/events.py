@@ -6,6 +6,8 @@ log together replay the run bit for bit.
 
 from __future__ import annotations
 
+from typing import Literal
+
 import msgspec
 
 from momentum_lab.physics.push import Push
@@ -34,6 +36,18 @@ class SelectPlanner(msgspec.Struct, frozen=True, tag=True):
     """Change what makes the momentum rates that are asked for."""
 
     name: str
+
+
+class SetMotion(msgspec.Struct, frozen=True, tag=True):
+    """Begin a motion on top of standing, from its start; an empty name ends it."""
+
+    name: str
+
+
+class SetAngularGoal(msgspec.Struct, frozen=True, tag=True):
+    """Ask for no angular momentum, or for that of the motion by kinematics alone."""
+
+    goal: Literal["zero", "reference"]
 
 
 class SelectController(msgspec.Struct, frozen=True, tag=True):
@@ -97,7 +111,17 @@ class Branch(msgspec.Struct, frozen=True, tag=True):
     """Go on from the instant that is looked at, with the gains, priority and controller of now."""
 
 
-SessionEvent = SetGain | SetPriority | SetDirections | SelectPlanner | SelectController | ApplyPush | Reset
+SessionEvent = (
+    SetGain
+    | SetPriority
+    | SetDirections
+    | SelectPlanner
+    | SetMotion
+    | SetAngularGoal
+    | SelectController
+    | ApplyPush
+    | Reset
+)
 PlaybackEvent = Play | Pause | StepOnce | SetSpeed | SelectRobot | LoadScenario | LookBack | Branch
 Event = SessionEvent | PlaybackEvent
 

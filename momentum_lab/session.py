@@ -15,7 +15,7 @@ from momentum_lab.control.controller import Controller, ControlOutput
 from momentum_lab.control.fallback import limp
 from momentum_lab.control.gains import with_gains
 from momentum_lab.control.handover import Handover
-from momentum_lab.control.motion import MovingGoal
+from momentum_lab.control.motion import AngularGoal, MovingGoal, reach_of
 from momentum_lab.control.planner import OWN
 from momentum_lab.control.registry import check_planner, controller_entry
 from momentum_lab.control.standing import StandingGoal
@@ -27,8 +27,10 @@ from momentum_lab.events import (
     SelectController,
     SelectPlanner,
     SessionEvent,
+    SetAngularGoal,
     SetDirections,
     SetGain,
+    SetMotion,
     SetPriority,
 )
 from momentum_lab.momentum.directions import Directions, directions
@@ -90,12 +92,16 @@ class Session:
     priority: float
     controlled: Directions
     planner: str
+    motion: str
+    angular_goal: AngularGoal
     controller: str
     gains: Any
     fall: Fall | None
     solver_failures: int
     last_failure: str | None
     _scripted: tuple[Push, ...]
+    _motion: MovingGoal | None
+    _motion_start: float
     _controller: Controller
     _memory: Any
     _torque: np.ndarray | None
@@ -115,7 +121,8 @@ class Session:
         home = self.robot.at(_starting_state(self.robot, scenario, None))
         self._standing_height = float(home.com_in_world[2])
         self._goal = StandingGoal(self.robot, home, self.stance)
-        self._motion = self._moving(home) if scenario.motion else None
+        self._home, self._tick_of_run = home, 0
+        self._move(scenario.motion, scenario.angular_goal, 0.0)
         friction = self.robot.spec.friction if scenario.friction is None else scenario.friction
         self._ground = Ground.level(len(self.robot.soles), friction)
         self._scripted = tuple(self._checked_push(push) for push in scenario.pushes)
@@ -147,12 +154,13 @@ class Session:
 
     @property
     def motion_reach(self) -> np.ndarray:
-        """How far the motion of the scenario moves each joint (na,), rad; zeros without one."""
+        """How far the present motion moves each joint (na,), rad; zeros without one."""
         return np.zeros(self.robot.na) if self._motion is None else self._motion.reach
 
     def angular_momentum_asked(self, time: float) -> np.ndarray:
-        """k_d of the scenario's motion at a time, s (3,), N m s; zeros without one."""
-        return np.zeros(3) if self._motion is None else self._motion.angular_momentum(time)
+        """k_d of the present motion at a time of the run, s (3,), N m s; zeros without one."""
+        since = max(0.0, time - self._motion_start)
+        return np.zeros(3) if self._motion is None else self._motion.angular_momentum(since)
 
     def post(self, event: SessionEvent) -> None:
         """Put an event into the inbox; it takes effect at the start of the next tick.
@@ -204,7 +212,7 @@ class Session:
             return limp(self.robot, dynamics, self._memory)
         reference = self._goal.reference(dynamics, self.controlled, self.planner)
         if self._motion is not None:
-            reference = self._motion.applied(reference, self.time)
+            reference = self._motion.applied(reference, self.time - self._motion_start)
         output = self._controller.compute(dynamics, reference, self.gains, self.priority, self._memory)
         if output.failure is not None:
             self.solver_failures += 1
@@ -212,17 +220,15 @@ class Session:
         torque = self._without_jump(output.torque)
         return output if torque is output.torque else replace(output, torque=torque)
 
-    def _moving(self, home: Dynamics) -> MovingGoal:
-        """The scenario's motion."""
-        scenario = self.scenario
-        return MovingGoal(
-            self.robot,
-            home,
-            self.stance,
-            scenario.motion,
-            scenario.angular_goal,
-            scenario.timestep,
-        )
+    def _move(self, name: str, angular_goal: AngularGoal, start: float) -> None:
+        """Let a motion begin at a time of the run, s, or end it; what the torque jumps by is faded."""
+        self.motion, self.angular_goal, self._motion_start = name, angular_goal, start
+        self._taken_over = True
+        self._motion = None
+        if name:
+            self._motion = MovingGoal(
+                self.robot, self._home, self.stance, name, angular_goal, self.scenario.timestep
+            )
 
     def _without_jump(self, torque: np.ndarray) -> np.ndarray:
         """The controller's torque; after a takeover it starts from the torque that was applied before."""
@@ -276,6 +282,8 @@ class Session:
                 directions(text)
             case SelectPlanner(name):
                 check_planner(name, self._controller_to_be())
+            case SetMotion(name) if name:
+                reach_of(self.robot, name)
             case SelectController(name):
                 controller_entry(name)
             case ApplyPush(push):
@@ -302,6 +310,10 @@ class Session:
                 self._select(name)
                 self._memory = self._controller.initial_memory(self.dynamics)
                 self._taken_over = True
+            case SetMotion(name):
+                self._move(name, self.angular_goal, self.time)
+            case SetAngularGoal(goal):
+                self._move(self.motion, goal, self._motion_start)
             case ApplyPush(push):
                 now = msgspec.structs.replace(self._checked_push(push), start=self.time)
                 self.pushes = (*self.pushes, now)
@@ -324,7 +336,7 @@ class Session:
         self.fall = None
         self.solver_failures = 0
         self.last_failure = None
-        self._tick_of_run = 0
+        self._tick_of_run, self._motion_start = 0, 0.0
         self._simulator = Simulator(self.robot, self._ground, self.scenario.timestep)
         self._memory = self._controller.initial_memory(self.dynamics)
         self._torque = self._handover = None

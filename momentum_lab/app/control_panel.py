@@ -15,6 +15,7 @@ from momentum_lab.app.widgets import Bound, Post, nice_step
 from momentum_lab.app.wire import Truth
 from momentum_lab.control.controller import SLACKS
 from momentum_lab.control.gains import GainInfo, declared_gains
+from momentum_lab.control.motion import ANGULAR_GOALS, MOTIONS
 from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.events import (
@@ -22,8 +23,10 @@ from momentum_lab.events import (
     SelectController,
     SelectPlanner,
     SelectRobot,
+    SetAngularGoal,
     SetDirections,
     SetGain,
+    SetMotion,
     SetPriority,
 )
 from momentum_lab.momentum.directions import directions, text_of
@@ -33,6 +36,7 @@ _DIRECTIONS = ("lx: forward", "ly: left", "lz: up", "kx: about forward", "ky: ab
 _SLACK_UNITS = tuple("m/s²" if name.startswith("com") else "rad/s²" for name in SLACKS)
 # How often the slacks change on the screen, s.
 _PERIOD = 0.1
+_STILL = "stand still"
 # Viser breaks labels after a slash; this one it does not know.
 _TYPOGRAPHY = str.maketrans("/", "∕")
 
@@ -86,6 +90,21 @@ class ControlPanel:
             SelectPlanner,
             post,
         )
+        self._motion: Bound[str] = Bound(
+            gui.add_dropdown("motion", (_STILL, *MOTIONS), initial_value=truth.motion or _STILL),
+            lambda name: SetMotion("" if name == _STILL else name),
+            post,
+        )
+        self._angular_goal: Bound[str] = Bound(
+            gui.add_dropdown(
+                "angular goal",
+                ANGULAR_GOALS,
+                initial_value=truth.angular_goal,
+                hint="zero: no angular momentum is asked for. reference: that of the motion itself.",
+            ),
+            lambda name: SetAngularGoal(next(goal for goal in ANGULAR_GOALS if goal == name)),
+            post,
+        )
         gui.add_html(html.sentence("When the ground cannot give both momentum rates:"))
         self._priority: Bound[float] = Bound(
             gui.add_slider(
@@ -114,6 +133,8 @@ class ControlPanel:
         self._scenario.follow(truth.scenario)
         self._controller.follow(truth.controller)
         self._planner.follow(truth.planner)
+        self._motion.follow(truth.motion or _STILL)
+        self._angular_goal.follow(truth.angular_goal)
         self._priority.follow(truth.priority)
         self._directions.follow(truth)
         if truth.controller != self._gains.controller:

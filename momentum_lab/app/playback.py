@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from momentum_lab.app.wire import Fallen, Truth
 from momentum_lab.control.gains import declared_gains
+from momentum_lab.control.motion import AngularGoal
 from momentum_lab.control.planner import OWN
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import InputError, SimulationError
@@ -22,8 +23,10 @@ from momentum_lab.events import (
     SelectPlanner,
     SelectRobot,
     SessionEvent,
+    SetAngularGoal,
     SetDirections,
     SetGain,
+    SetMotion,
     SetPriority,
     SetSpeed,
     StepOnce,
@@ -31,6 +34,7 @@ from momentum_lab.events import (
 from momentum_lab.momentum.directions import directions, text_of
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
+from momentum_lab.robot.catalog import load_spec
 from momentum_lab.scenario import Scenario, changed, load_scenario
 from momentum_lab.session import Session
 from momentum_lab.timeline import Timeline
@@ -44,12 +48,14 @@ _AT_ONCE, _IN_PASSING = 2000, 256
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """What a person has chosen for a session: controller, priority, directions, planner, and all gains by name."""
+    """What a person has chosen for a session."""
 
     controller: str
     priority: float
     controlled: str
     planner: str
+    motion: str
+    angular_goal: AngularGoal
     gains: dict[str, float]
 
     def until(self, other: Chosen) -> list[SessionEvent]:
@@ -65,6 +71,10 @@ class Chosen:
             events.append(SetDirections(other.controlled))
         if other.planner != self.planner:
             events.append(SelectPlanner(other.planner))
+        if other.motion != self.motion:
+            events.append(SetMotion(other.motion))
+        if other.angular_goal != self.angular_goal:
+            events.append(SetAngularGoal(other.angular_goal))
         return events + [SetGain(name, value) for name, value in other.gains.items() if value != gains[name]]
 
 
@@ -151,6 +161,8 @@ class Playback:
             priority=chosen.priority,
             controlled=chosen.controlled,
             planner=chosen.planner,
+            motion=chosen.motion,
+            angular_goal=chosen.angular_goal,
             gains=chosen.gains,
             playing=self.playing,
             speed=self.speed,
@@ -167,6 +179,7 @@ class Playback:
         """The choices of this moment; those that wait for the next tick count as made."""
         session = self.session
         priority, controlled = session.priority, text_of(session.controlled)
+        motion, angular_goal = session.motion, session.angular_goal
         controller, planner, gains = session.controller, session.planner, _values(session.gains)
         for event in self._waiting:
             match event:
@@ -176,12 +189,16 @@ class Playback:
                     controlled = text_of(directions(text))
                 case SelectPlanner(name):
                     planner = name
+                case SetMotion(name):
+                    motion = name
+                case SetAngularGoal(goal):
+                    angular_goal = goal
                 case SetGain(name, value):
                     gains[name] = value
                 case SelectController(name):
                     controller, gains = name, _values(controller_entry(name).gains)
                     planner = planner if planner in controller_entry(name).planners else OWN
-        return Chosen(controller, priority, controlled, planner, gains)
+        return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains)
 
     def _fall(self) -> Fallen | None:
         """The fall, unless it is still to come at the instant that is looked at."""
@@ -252,6 +269,8 @@ class Playback:
             priority=truth.priority,
             controlled=truth.controlled,
             planner=truth.planner,
+            motion=truth.motion if truth.motion in load_spec(name).motions else "",
+            angular_goal=truth.angular_goal,
             gains=gains,
         )
 

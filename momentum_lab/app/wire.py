@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 
 from momentum_lab import events
+from momentum_lab.control.motion import AngularGoal
 from momentum_lab.physics.push import Push
 
 
@@ -35,6 +36,8 @@ class Truth(msgspec.Struct, frozen=True):
         priority: from 0 to 1.
         controlled: the directions of momentum that are asked for, in the shortest words.
         planner: what makes the momentum rates that are asked for.
+        motion: what the robot does besides standing; empty: nothing.
+        angular_goal: the angular momentum that is asked for meanwhile.
         gains: all gains of the controller.
         playing: whether simulated time runs.
         speed: the fraction of real time it is asked to run at.
@@ -54,6 +57,8 @@ class Truth(msgspec.Struct, frozen=True):
     priority: float
     controlled: str
     planner: str
+    motion: str
+    angular_goal: AngularGoal
     gains: dict[str, float]
     playing: bool
     speed: float

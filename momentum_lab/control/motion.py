@@ -95,10 +95,8 @@ class MovingGoal:
         angular_goal: AngularGoal,
         timestep: float,
     ) -> None:
-        if name not in MOTIONS:
-            raise InputError("motion", name, f"one of {', '.join(MOTIONS)}")
+        self.reach = reach_of(robot, name)
         self._course = MOTIONS[name].course
-        self.reach = _reach(robot, name)
         self._timestep = timestep
         self._period = round(MOTIONS[name].period / timestep)
         self._angular = np.zeros((1, 3))
@@ -139,8 +137,14 @@ class MovingGoal:
         return moved.momentum[:, 3:]
 
 
-def _reach(robot: RobotModel, name: str) -> np.ndarray:
-    """How far each joint goes (na,), rad."""
+def reach_of(robot: RobotModel, name: str) -> np.ndarray:
+    """How far each joint of a robot goes in a motion (na,), rad.
+
+    Raises:
+        InputError: there is no such motion, or the robot's file does not say which joints it moves.
+    """
+    if name not in MOTIONS:
+        raise InputError("motion", name, f"one of {', '.join(MOTIONS)}")
     patterns = robot.spec.motions.get(name)
     if not patterns:
         known = ", ".join(robot.spec.motions) or "none"

@@ -13,7 +13,15 @@ from momentum_lab.app.playback import Playback
 from momentum_lab.control.computed_torque import ComputedTorqueGains
 from momentum_lab.control.controller import SLACKS
 from momentum_lab.control.gains import GainInfo, declared_gains
-from momentum_lab.events import LoadScenario, SelectRobot, SetDirections, SetGain, SetPriority
+from momentum_lab.events import (
+    LoadScenario,
+    SelectRobot,
+    SetAngularGoal,
+    SetDirections,
+    SetGain,
+    SetMotion,
+    SetPriority,
+)
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
@@ -92,6 +100,15 @@ def test_changes_have_units():
     values["linear_damping"] = 12.0
     default = DECLARED["linear_damping"].default
     assert changed_gains(DECLARED.values(), values) == [f"linear damping: {default:g} → 12 1∕s"]
+
+
+def test_a_motion_and_its_angular_goal_are_chosen(desk):
+    motion, goal = desk.gui.widgets["motion"], desk.gui.widgets["angular goal"]
+    assert motion.value == "stand still"
+    motion.set_by_person("kick")
+    goal.set_by_person("reference")
+    motion.set_by_person("stand still")
+    assert desk.posted == [SetMotion("kick"), SetAngularGoal("reference"), SetMotion("")]
 
 
 def test_directions_are_ticked_one_by_one_and_follow_the_truth(desk):

@@ -17,8 +17,10 @@ from momentum_lab.events import (
     Reset,
     SelectController,
     SelectRobot,
+    SetAngularGoal,
     SetDirections,
     SetGain,
+    SetMotion,
     SetPriority,
     SetSpeed,
     StepOnce,
@@ -134,6 +136,15 @@ def test_another_scenario_keeps_the_robot():
     assert truth(playback).scenario == "mine"
 
 
+def test_another_robot_keeps_a_motion_that_it_knows(playback):
+    playback.take(SetMotion("arm-swing"))
+    playback.tick(1)
+    playback.take(SelectRobot("g1"))
+    assert truth(playback).motion == "arm-swing"
+    playback.take(SelectRobot("icub"))
+    assert truth(playback).motion == ""
+
+
 def test_the_same_scenario_again_keeps_the_loaded_robot(playback):
     robot = playback.session.robot
     playback.take(LoadScenario("stand"))
@@ -196,6 +207,8 @@ def test_a_branch_goes_on_from_there_with_what_was_chosen_meanwhile(fallen):
     fallen.take(SetGain("com_damping", 12.0))
     fallen.take(SetPriority(0.5))
     fallen.take(SetDirections("kz+linear"))
+    fallen.take(SetMotion("arm-swing"))
+    fallen.take(SetAngularGoal("reference"))
     assert truth(fallen).controlled == "linear+kz"
     fallen.take(Branch())
     now = truth(fallen)
@@ -204,7 +217,8 @@ def test_a_branch_goes_on_from_there_with_what_was_chosen_meanwhile(fallen):
     assert (now.controller, now.priority, now.gains["com_damping"]) == ("slack-qp", 0.5, 12.0)
     assert np.array_equal(fallen.session.recording.rows()[:50], rows[:50])
     assert (now.controlled, now.planner) == ("linear+kz", "momentum")
-    assert [entry.tick for entry in fallen.session.log] == [50, 50, 50, 50]
+    assert (now.motion, now.angular_goal) == ("arm-swing", "reference")
+    assert [entry.tick for entry in fallen.session.log] == 6 * [50]
     fallen.tick(1)
     assert fallen.session.controller == "slack-qp"
 

@@ -26,6 +26,8 @@ EVENTS = [
     events.SelectController("computed-torque"),
     events.SetDirections("linear+kz"),
     events.SelectPlanner("cop-to-com"),
+    events.SetMotion("kick"),
+    events.SetAngularGoal("reference"),
     events.ApplyPush(Push(force=217.0, body="head", shape="half-sine")),
     events.Reset(),
     events.Play(),

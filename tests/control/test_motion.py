@@ -10,6 +10,7 @@ import pytest
 from momentum_lab.control.motion import MOTIONS, MovingGoal
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import InputError, ScenarioError
+from momentum_lab.events import SetAngularGoal, SetMotion
 from momentum_lab.robot.state import State
 from momentum_lab.scenario import Scenario, changed
 from momentum_lab.session import Session
@@ -95,6 +96,27 @@ def test_every_controller_follows_smoothly(robot, controller, name, stance, tick
     assert session.solver_failures == 0
     jumps = np.abs(np.diff(session.recording.column("torque"), axis=0)) / robot.effort_limit
     assert jumps[5:].max() < 0.1
+
+
+def test_a_motion_begins_and_ends_in_mid_run_without_a_jump(robot):
+    """From its own start, whenever it is asked for; and the robot is back in its posture after it."""
+    session = Session(Scenario("m", robot=robot.spec.name, seconds=4.0), robot)
+    for tick in range(3800):
+        if tick in (300, 2100):
+            session.post(SetMotion("arm-swing" if tick == 300 else ""))
+        if tick == 900:
+            session.post(SetAngularGoal("reference"))
+        session.tick()
+    posture = session.recording.column("q")[:, 7:]
+    moved = np.abs(posture - posture[0]).max(axis=1)
+    assert moved[:800].max() < 5e-3
+    assert moved[800:2100].max() > 0.3
+    assert moved[-1] < 0.02
+    jumps = np.abs(np.diff(session.recording.column("torque"), axis=0)) / robot.effort_limit
+    assert jumps[5:].max() < 0.1
+    assert session.motion == ""
+    with pytest.raises(InputError, match=r"^motion: got dance"):
+        session.post(SetMotion("dance"))
 
 
 def test_what_cannot_be_done_is_said(talos):
