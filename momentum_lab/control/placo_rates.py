@@ -17,6 +17,8 @@ from momentum_lab.robot.state import State
 # this size too. PlaCo's own pull towards zero motion is kept far below.
 _REFERENCE_WEIGHT = 1e-5
 _RIDGE = 1e-12
+# A joint comes to a limit no faster than with this time constant, s.
+_ARRIVAL = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +54,8 @@ class PlacoRates:
         self.stance = stance
         self.timestep = timestep
         self._body = placo_body(robot)
+        model = self._body.model
+        self._limits = model.lowerPositionLimit.copy(), model.upperPositionLimit.copy()
         self._solver = solver = self._body.make_solver()
         solver.dt = timestep
         solver.problem.regularization = _RIDGE
@@ -87,6 +91,7 @@ class PlacoRates:
             SolverError: the feet cannot be where they shall be within the limits of the joints.
         """
         dt = self.timestep
+        self._slow_down_before_limits(q[7:])
         follow(self._body, State(q, np.zeros(self.robot.nv)))
         for task, foothold in zip(self._feet, footholds, strict=True):
             task.T_world_frame = foothold
@@ -100,6 +105,16 @@ class PlacoRates:
             return self._solver.solve(False) / dt
         except RuntimeError as error:
             raise SolverError(f"PlaCo finds no joint rates: {error}") from error
+
+    def _slow_down_before_limits(self, angle: np.ndarray) -> None:
+        """Let no joint (na,) cover more of its way to a limit in this step than dt / T: it arrives without a blow."""
+        model, share = self._body.model, self.timestep / _ARRIVAL
+        lower, upper = self._limits
+        above, below = np.maximum(upper[7:] - angle, 0.0), np.maximum(angle - lower[7:], 0.0)
+        low, high = lower.copy(), upper.copy()
+        high[7:] = np.minimum(upper[7:], angle + share * above)
+        low[7:] = np.maximum(lower[7:], angle - share * below)
+        model.lowerPositionLimit, model.upperPositionLimit = low, high
 
     def _refer_to(self, q: np.ndarray, reference: np.ndarray) -> None:
         """Pelvis and joints one step along the reference rates."""

@@ -148,13 +148,17 @@ class ResolvedMomentum:
     ) -> np.ndarray:
         """h_d = [l_d; k_d] about the CoM of a set-point q (6,), N s and N m s.
 
-        l_d = m [dr_d + kappa (r_d - T (dr - dr_d) - r*)], with r the real CoM, r* that of the set-point;
+        l_d = m [dr_d + kappa (r_d - T (dr - dr_d) - r*)], with r the real CoM, r* that of the set-point, and the
+        lead T in x and y only: vertically it would meet both closed chains of the legs and, on G1, put a pole of
+        the sampled loop at -0.95, that is torques that alternate from tick to tick.
         k_d the reference's, and rate I_G e_R to turn the pelvis of the set-point upright.
         """
         model, data = self.robot.model, self._data
         com = pin.centerOfMass(model, data, q)
         pelvis = pin.updateFramePlacement(model, data, self.robot.pelvis).rotation
-        ahead = reference.com - gains.com_lead * (dynamics.com_velocity - reference.com_velocity)
+        lead = gains.com_lead * (dynamics.com_velocity - reference.com_velocity)
+        lead[2] = 0.0
+        ahead = reference.com - lead
         linear = reference.com_velocity + gains.com_rate * (ahead - com)
         tilt = pin.log3(reference.pelvis_rotation @ pelvis.T)
         angular = reference.angular_momentum + gains.pelvis_rate * (dynamics.locked_inertia @ tilt)

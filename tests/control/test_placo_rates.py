@@ -66,7 +66,7 @@ def test_feet_go_to_their_footholds_in_one_step(robot, rng):
 
 
 def test_joints_stay_within_their_limits(robot, rng):
-    """A reference beyond a limit ends at the limit."""
+    """A reference beyond a limit covers dt / T = 1 / 50 of what is left of the way to it."""
     dynamics = home(robot)
     goal = some_goal(robot, rng, directions("lx"))
     joint = int(robot.upper_body[-1])
@@ -74,7 +74,8 @@ def test_joints_stay_within_their_limits(robot, rng):
     q[7 + joint] = robot.position_upper[joint] - 1e-4
     goal.reference[6 + joint] = 2.0
     rates = PlacoRates(robot, BOTH, DT).solve(q, poses(dynamics, BOTH), goal)
-    assert q[7 + joint] + DT * rates[6 + joint] == pytest.approx(robot.position_upper[joint], abs=1e-9)
+    left = robot.position_upper[joint] - q[7 + joint] - DT * rates[6 + joint]
+    assert left == pytest.approx(0.98 * 1e-4, abs=1e-9)
 
 
 def test_feet_out_of_reach_are_an_error_in_words(talos, rng):
@@ -95,3 +96,20 @@ def test_the_answer_is_a_function_of_the_question(robot, rng):
     first.solve(other.state.q, poses(other, BOTH), some_goal(robot, rng, directions("lx+kz")))
     assert first.solve(*question).tobytes() == answer.tobytes()
     assert second.solve(*question).tobytes() == answer.tobytes()
+
+
+def test_a_joint_arrives_at_its_limit_without_a_blow(robot):
+    """Rates that would run into a limit within a fraction of a second shrink with the distance to it."""
+    dynamics, joint = home(robot), int(robot.upper_body[0])
+    q, rates, footholds = dynamics.state.q.copy(), PlacoRates(robot, BOTH, DT), poses(dynamics, BOTH)
+    q[7 + joint] = robot.position_upper[joint] - 0.8
+    wish, speeds = np.zeros(robot.nv), []
+    wish[6 + joint] = 3.0
+    for _ in range(600):
+        v = rates.solve(q, footholds, MomentumGoal(np.zeros(6), directions("none"), wish))
+        speeds.append(v[6 + joint])
+        assert v[6 + joint] <= (robot.position_upper[joint] - q[7 + joint]) / 0.05 + 1e-6
+        q = robot.integrate(q, v * DT)
+    assert max(speeds) > 1.0
+    assert np.abs(np.diff(speeds)).max() < 0.1
+    assert 0.0 <= robot.position_upper[joint] - q[7 + joint] < 0.02
