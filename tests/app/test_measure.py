@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 
 from momentum_lab.app.figures import AppMeasurement, figures
@@ -34,9 +36,19 @@ def test_time_runs_and_is_drawn(measured):
     assert measured.late_ticks_per_minute >= 0.0
 
 
-def test_drawing_is_cheap_even_on_a_busy_machine(measured):
-    # Processor time, which other programs do not lengthen much; it was 0.29 before plots kept their polygons.
-    assert 0.01 < measured.server_cpu < 0.25
+def loop_time() -> float:
+    """Processor time of some plain Python: what this machine makes of a second of another one, s."""
+    start, total = time.process_time(), 0
+    for i in range(500_000):
+        total += i * i % 7
+    return time.process_time() - start
+
+
+def test_drawing_is_cheap_for_this_machine(measured):
+    # As a ratio, because machines differ by a factor of two: 5.6 loops a second when this was written, and some 10
+    # before plots kept their polygons. The report's own bound, a quarter of a core, is read above, not judged.
+    loop = sorted(loop_time() for _ in range(9))[4]
+    assert 0.5 < measured.server_cpu / loop < 8.5
 
 
 def test_a_push_is_seen_soon(measured):

@@ -46,6 +46,16 @@ class LabPage:
     def expect_text(self, words: str) -> None:
         expect(self.page.get_by_text(re.compile(words)).first).to_be_visible(timeout=PATIENCE)
 
+    def settled_text(self, words: str) -> str:
+        """What a line with these words says once it has stopped changing: steps may still be on their way."""
+        text = self.page.get_by_text(words).inner_text()
+        for _ in range(PATIENCE // 2000):
+            self.page.wait_for_timeout(2000)
+            last, text = text, self.page.get_by_text(words).inner_text()
+            if text == last:
+                break
+        return text
+
     def press(self, *keys: str) -> None:
         for key in keys:
             self.page.keyboard.press(key)

@@ -127,7 +127,7 @@ def test_paused_at_the_moment_that_teaches(served: Served, open_page: Opener) ->
         lab.press("j")
         lab.page.wait_for_timeout(150)
     expect(lab.page.get_by_text("simulated time")).not_to_have_text(paused, timeout=PATIENCE)
-    paused = lab.page.get_by_text("simulated time").inner_text()
+    paused = lab.settled_text("simulated time")
     lab.press("3")
     expect(lab.page.get_by_role("tab", name="View")).to_have_attribute("aria-selected", "true")
     lab.click("minimal")
