@@ -23,6 +23,8 @@ _PUSH_EVERY = 1.5
 _CALM, _WARM_UP = 2.0, 3.0
 # How long silence is listened to, s.
 _LISTEN = 2.0
+# What was sent in a hurry is on its way for so long, s: an hour of drawings would have been read long ago.
+_SETTLING = 2.0
 # Growth of memory is told from here on, and from so many seconds more, s.
 _FIRST_MINUTE, _ENOUGH = 60.0, 60.0
 # A run of ten minutes or more is followed by an hour's worth of messages, a shorter one by less in proportion.
@@ -157,6 +159,7 @@ def _newcomer(server: MeasuredServer, client: BareClient, messages: int) -> tupl
     """Another tab opens after so many messages: the longest time without a drawing, and its first picture, s."""
     server.begin_aging(messages)
     client.read_until(lambda _: server.aged(), _HOUR)
+    client.read(_SETTLING)
     client.set_value(PUSH, True)
     client.read(0.3)
     with ThreadPoolExecutor(1) as pool:
