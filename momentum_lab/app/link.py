@@ -13,6 +13,7 @@ import msgspec
 
 from momentum_lab.app import worker
 from momentum_lab.app.inbox import checked_event
+from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.wire import Frame, FrameTaken, FrameWanted, packed, unpacked_frame
 from momentum_lab.events import Event
 from momentum_lab.scenario import Scenario
@@ -69,6 +70,10 @@ class Link:
                     return
                 yield unpacked_frame(data)
                 self._send(packed(FrameTaken()))
+
+    def ask(self, event: LessonEvent) -> None:
+        """Hand on what a lesson asks for."""
+        self._send(packed(event))
 
     def want_frame(self) -> None:
         """Ask for a frame even if nothing has happened."""

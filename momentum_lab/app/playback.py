@@ -35,6 +35,7 @@ from momentum_lab.momentum.directions import directions, text_of
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
 from momentum_lab.robot.catalog import load_spec
+from momentum_lab.robot.model import RobotModel
 from momentum_lab.scenario import Scenario, changed, load_scenario
 from momentum_lab.session import Session
 from momentum_lab.timeline import Timeline
@@ -83,16 +84,17 @@ class Playback:
 
     Args:
         scenario: what to start with; it can be started again by its name.
+        robot: its robot, if it is loaded already.
     """
 
-    def __init__(self, scenario: Scenario) -> None:
+    def __init__(self, scenario: Scenario, robot: RobotModel | None = None) -> None:
         self._first = scenario
         self.run = 0
         self.speed = 1.0
         self.playing = True
         self.stopped: str | None = None
         self._waiting: list[SessionEvent] = []
-        self._begin(scenario)
+        self._begin(scenario, robot)
 
     @property
     def latest(self) -> Sample:
@@ -243,10 +245,11 @@ class Playback:
             self.run += 1
             self.tick(1)
 
-    def _begin(self, scenario: Scenario) -> None:
+    def _begin(self, scenario: Scenario, robot: RobotModel | None = None) -> None:
         """A new session, standing; the old one goes on if this one cannot be made."""
         old = getattr(self, "session", None)
-        robot = old.robot if old is not None and old.scenario.robot == scenario.robot else None
+        if old is not None and old.scenario.robot == scenario.robot:
+            robot = old.robot
         session = Session(scenario, robot, capacity=round(MEMORY / scenario.timestep))
         session.recording.reserve(_AT_ONCE)
         self.session, self._timeline = session, Timeline(session)

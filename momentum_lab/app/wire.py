@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 
 from momentum_lab import events
+from momentum_lab.app.lesson_wire import LessonEvent, LessonNews
 from momentum_lab.control.motion import AngularGoal
 from momentum_lab.physics.push import Push
 
@@ -80,6 +81,7 @@ class Frame(msgspec.Struct, frozen=True):
         history: the samples at the pace of the plots since the last frame, float64, oldest first.
         notices: what has to be told to the person, once.
         late_ticks: how many ticks have begun late since the session's process started.
+        lesson: how far the lesson has come, if that is new.
     """
 
     truth: Truth
@@ -87,9 +89,10 @@ class Frame(msgspec.Struct, frozen=True):
     history: bytes
     notices: tuple[str, ...] = ()
     late_ticks: int = 0
+    lesson: LessonNews | None = None
 
 
-Message = events.Event | FrameTaken | FrameWanted
+Message = events.Event | LessonEvent | FrameTaken | FrameWanted
 
 _encoder = msgspec.msgpack.Encoder()
 _message_decoder = msgspec.msgpack.Decoder(Message)

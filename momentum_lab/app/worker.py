@@ -16,6 +16,8 @@ import msgspec
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from momentum_lab.app.classroom import Classroom
+from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.pacer import Pacer
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.wire import Frame, FrameTaken, FrameWanted, packed, unpacked_message
@@ -66,13 +68,18 @@ class Worker:
     ) -> None:
         self._clock = clock
         self._connection = connection
-        self._playback = playback
+        self._room = Classroom(playback)
         self._pacer = Pacer(playback.session.scenario.timestep)
         self._history: list[np.ndarray] = []
         self._notices: list[str] = []
         self._taken = True
         self._news = True
         self._next_frame = 0.0
+
+    @property
+    def _playback(self) -> Playback:
+        """What is played now."""
+        return self._room.stage
 
     def run(self) -> None:
         """Keep going until the pipe closes.
@@ -108,15 +115,18 @@ class Worker:
             case _:
                 self._take(message)
 
-    def _take(self, event: Event) -> None:
-        playback = self._playback
-        run, playing, ticks = playback.run, playback.playing, playback.session.ticks
+    def _take(self, event: Event | LessonEvent) -> None:
+        before = self._playback
+        run, playing, ticks = before.run, before.playing, before.session.ticks
         try:
-            playback.take(event)
+            self._room.take(event)
         except LabError as error:
             self._notices.append(str(error))
+        playback = self._playback
         if playback.run != run:
             self._history.clear()
+        if playback is not before:
+            self._history += list(playback.session.recording.rows(HISTORY_EVERY)[-_MOST_HISTORY:].copy())
         if playback.run != run or playing != playback.playing or isinstance(event, Play | SetSpeed):
             self._pacer.start(self._clock(), playback.speed)
         if playback.run != run or playback.session.ticks != ticks:
@@ -148,6 +158,7 @@ class Worker:
             row=self._playback.shown.row.tobytes(),
             history=b"".join(row.tobytes() for row in self._history),
             notices=tuple(self._notices),
+            lesson=self._room.news(),
         )
         self._history.clear()
         self._notices.clear()

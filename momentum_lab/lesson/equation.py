@@ -95,22 +95,35 @@ def sides(text: str) -> tuple[ast.expr, ast.expr]:
     return left, right
 
 
-def residual(equation: Equation, session: Session) -> float:
-    """Largest difference of both sides on the given share of the ticks, in the equation's unit; NaN without any."""
-    values = _values(equation, session)
+def course(equation: Equation, session: Session) -> dict[str, np.ndarray]:
+    """What every symbol is over time (n,), or as one number (); differences over a tick are one shorter than what
+    they come from, so all are as long as the shortest.
+    """
+    found = {name: np.asarray(symbol.values(session)) for name, symbol in equation.symbols.items()}
+    length = min((len(value) for value in found.values() if value.ndim), default=1)
+    return {name: value[:length] if value.ndim else value for name, value in found.items()}
+
+
+def apart(equation: Equation, values: Mapping[str, np.ndarray]) -> np.ndarray:
+    """How far both sides differ over time (n,), in the equation's unit."""
     # A robot without a force under it divides by zero: those ticks do not count, or they spoil the claim.
     with np.errstate(all="ignore"):
         left, right = (np.asarray(_number(side, values)) for side in sides(equation.text))
-    apart = np.atleast_1d(np.abs(left - right))
-    counted = (upright(session) & (times(session) >= equation.since))[: len(apart)]
-    apart = apart[counted] if len(apart) > 1 else apart
-    return float(np.percentile(apart, 100.0 * equation.share)) if apart.size else float("nan")
+    return np.atleast_1d(np.abs(left - right))
+
+
+def residual(equation: Equation, session: Session) -> float:
+    """Largest difference of both sides on the given share of the ticks, in the equation's unit; NaN without any."""
+    difference = apart(equation, course(equation, session))
+    counted = (upright(session) & (times(session) >= equation.since))[: len(difference)]
+    difference = difference[counted] if len(difference) > 1 else difference
+    return float(np.percentile(difference, 100.0 * equation.share)) if difference.size else float("nan")
 
 
 def numbers(equation: Equation, session: Session, time: float) -> dict[str, float]:
     """What every symbol is at a time (s) of a run, or at its nearest end."""
     found = {}
-    for name, value in _values(equation, session).items():
+    for name, value in course(equation, session).items():
         tick = min(round(time / session.scenario.timestep), np.size(value) - 1)
         found[name] = float(np.atleast_1d(value)[tick])
     return found
@@ -118,12 +131,16 @@ def numbers(equation: Equation, session: Session, time: float) -> dict[str, floa
 
 def mathml(equation: Equation, values: Mapping[str, float]) -> str:
     """The equation as one MathML element, each symbol over its number; without values, bare."""
-    left, right = sides(equation.text)
-    labels = {
-        name: f"{value:{equation.symbols[name].spec}} {equation.symbols[name].unit}".strip()
-        for name, value in values.items()
-    }
-    body = f"{_write(left, labels, equation.text)}<mo>=</mo>{_write(right, labels, equation.text)}"
+    symbols = equation.symbols
+    labels = {name: f"{value:{symbols[name].spec}} {symbols[name].unit}" for name, value in values.items()}
+    return labelled(equation.text, labels)
+
+
+def labelled(text: str, labels: Mapping[str, str]) -> str:
+    """An equation as one MathML element, each symbol over its label."""
+    left, right = sides(text)
+    labels = {name: label.strip() for name, label in labels.items()}
+    body = f"{_write(left, labels, text)}<mo>=</mo>{_write(right, labels, text)}"
     namespace = 'xmlns="http://www.w3.org/1998/Math/MathML"'
     return f'<math {namespace} display="block"><mrow>{body}</mrow></math>'
 
@@ -132,13 +149,6 @@ def _quantities(text: str) -> list[str]:
     """The names of an equation that stand for quantities."""
     names = [node.id for side in sides(text) for node in ast.walk(side) if isinstance(node, ast.Name)]
     return [name for name in names if name not in _FUNCTIONS]
-
-
-def _values(equation: Equation, session: Session) -> dict[str, np.ndarray]:
-    """The symbols' values, all of one length: differences over a tick are one shorter than what they come from."""
-    found = {name: np.asarray(symbol.values(session)) for name, symbol in equation.symbols.items()}
-    length = min((len(value) for value in found.values() if value.ndim), default=1)
-    return {name: value[:length] if value.ndim else value for name, value in found.items()}
 
 
 def _number(node: ast.expr, values: Mapping[str, np.ndarray]) -> np.ndarray:

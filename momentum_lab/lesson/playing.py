@@ -29,12 +29,10 @@ from momentum_lab.lesson.parts import (
     Value,
     Values,
 )
+from momentum_lab.lesson.staging import Staging
 from momentum_lab.lesson.text import spoken, with_unit
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.session import Session
-
-# There is nothing to learn from a robot that lies on the ground, s.
-_AFTER_A_FALL = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +80,15 @@ def play_lesson(
     for label, run in lesson.runs.items():
         with located(lesson.file, label):
             runs[label] = _played(run, robot, _part_of(len(runs), len(lesson.runs), proceed))
+    return measured(lesson, runs)
+
+
+def measured(lesson: Lesson, runs: Runs) -> Played:
+    """What a lesson's runs show, once all of them have been played.
+
+    Raises:
+        LessonError: a measure or a claim of the lesson has an error in it.
+    """
     values = {name: _measured(lesson, name, runs) for name in lesson.measures}
     asserted = [claim for each in lesson.claims for claim in _judged(each, lesson, runs, values)]
     implied = [claim for step in lesson.steps for claim in _implied(step, lesson, runs, values)]
@@ -145,15 +152,8 @@ def report(played: Played) -> dict[str, Any]:
 def _played(run: Run, robot: RobotModel, proceed: Callable[[float], bool]) -> Session:
     """One run to its end or to a fall, each event at its time."""
     session = Session(run.for_robot(robot.spec.name), robot=robot)
-    coming = sorted(run.events, key=lambda event: event[0])
-
-    def due(fraction: float) -> bool:
-        while coming and coming[0][0] <= session.time + 1e-9:
-            session.post(coming.pop(0)[1])
-        fallen = session.fall is not None and session.time > session.fall.time + _AFTER_A_FALL
-        return proceed(fraction) and not fallen
-
-    timing = run_headless(session, due)
+    staging = Staging(run)
+    timing = run_headless(session, lambda fraction: proceed(fraction) and staging.prepare(session))
     if timing.error is not None:
         raise SimulationError(timing.error)
     return session

@@ -1,0 +1,193 @@
+"""A lesson in a session's process: its runs are played in sight, and measured; the person's own session waits."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from momentum_lab.app.lesson_wire import LeaveLesson, LessonEvent, LessonNews, OpenLesson, PlayRun, ShowRun
+from momentum_lab.app.playback import Playback
+from momentum_lab.errors import InputError, LabError
+from momentum_lab.events import Branch, Event, LookBack, Pause, Play, Reset, SetSpeed, StepOnce
+from momentum_lab.lesson.loader import load_lesson
+from momentum_lab.lesson.parts import Lesson, Run
+from momentum_lab.lesson.playing import measured
+from momentum_lab.lesson.record import LessonRecord, recorded
+from momentum_lab.lesson.staging import Staging, is_over
+from momentum_lab.robot.model import RobotModel
+from momentum_lab.scenario import changed
+
+# Ticks in a row while a run is played out of sight.
+_AT_A_TIME = 100
+
+
+class RunPlayback(Playback):
+    """The playback of a lesson's run: its events come at their times, and it stops at its end.
+
+    Args:
+        run: the run.
+        robot: who plays it.
+    """
+
+    def __init__(self, run: Run, robot: RobotModel) -> None:
+        self._staging = Staging(run)
+        super().__init__(run.for_robot(robot.spec.name), robot)
+
+    @property
+    def over(self) -> bool:
+        """Whether it has been played to its end."""
+        return is_over(self.session)
+
+    def tick(self, count: int) -> None:
+        """Some ticks, fewer if the run comes to its end."""
+        for _ in range(count):
+            if self.stopped is not None or not self._staging.prepare(self.session):
+                self.playing = False
+                return
+            super().tick(1)
+
+    def show(self, time: float) -> None:
+        """Stop, and look at the instant of that time, s."""
+        while not self.over and self.stopped is None and self.session.time < time:
+            self.tick(_AT_A_TIME)
+        self.take(LookBack(max(0.0, self.latest.number("time") - time)))
+
+
+class Classroom:
+    """Whose turn it is: the person's own session, a lesson's run, or what the person tries in its place.
+
+    Args:
+        own: the person's own session.
+
+    Attributes:
+        stage: what is played and shown now.
+    """
+
+    def __init__(self, own: Playback) -> None:
+        self._own = self.stage = own
+        self._lesson: Lesson | None = None
+        self._robot: RobotModel | None = None
+        self._runs: dict[str, RunPlayback] = {}
+        self._on_stage = ""
+        self._begun = False
+        self._record: LessonRecord | None = None
+        self._error = ""
+        self._told = LessonNews()
+
+    def take(self, event: Event | LessonEvent) -> None:
+        """Do what an event asks for, and put on stage what it is about.
+
+        Raises:
+            InputError: it asks for something that does not exist, is out of range, or comes too early.
+        """
+        before = self.stage
+        match event:
+            case OpenLesson():
+                self._open(event)
+            case PlayRun(label):
+                self._play(label)
+            case ShowRun(label, time):
+                self._show(label, time)
+            case LeaveLesson():
+                self._leave()
+            case _:
+                self._pass_on(event)
+        if self.stage is not before and self.stage is not self._own:
+            self.stage.speed = before.speed
+            # Neighbours on stage must be told apart, and so must what they were before.
+            self.stage.run = before.run + 1
+
+    def news(self) -> LessonNews | None:
+        """How far the lesson has come, if that is not what was told last."""
+        self._measure()
+        news = LessonNews(
+            "" if self._lesson is None else str(self._lesson.file),
+            tuple(label for label, playback in self._runs.items() if playback.over),
+            self._on_stage,
+            self._record,
+            self._error,
+        )
+        if news == self._told:
+            return None
+        self._told = news
+        return news
+
+    def _open(self, event: OpenLesson) -> None:
+        self._leave()
+        try:
+            lesson = load_lesson(Path(event.file))
+        except LabError as error:
+            self._error = str(error)
+            return
+        stage = self.stage
+        same = stage.session.robot if stage.session.scenario.robot == event.robot else None
+        self._robot = same or RobotModel.named(event.robot)
+        self._lesson, self._record, self._error, self._begun = lesson, None, "", False
+        self._put_on_stage(next(label for label, run in lesson.runs.items() if run is lesson.first_run))
+        self.stage.playing = False
+
+    def _play(self, label: str) -> None:
+        self._put_on_stage(label)
+        self._begun = True
+
+    def _show(self, label: str, time: float) -> None:
+        if label in self._runs:
+            self.stage, self._on_stage = self._runs[label], label
+        else:
+            self._put_on_stage(label)
+        self._begun = self._begun or time > 0.0
+        if time > 0.0:
+            self._finish(self._runs[label])
+        self._runs[label].show(time)
+
+    def _put_on_stage(self, label: str) -> None:
+        """A run of the lesson at its start."""
+        lesson, robot = self._lesson, self._robot
+        if lesson is None or robot is None or label not in lesson.runs:
+            known = "no lesson is open" if lesson is None else f"one of {', '.join(lesson.runs)}"
+            raise InputError("run", label, known)
+        self._runs[label] = RunPlayback(lesson.runs[label], robot)
+        self.stage, self._on_stage = self._runs[label], label
+
+    def _finish(self, playback: RunPlayback) -> None:
+        while not playback.over and playback.stopped is None:
+            playback.tick(_AT_A_TIME)
+
+    def _leave(self) -> None:
+        self.stage, self._lesson, self._on_stage = self._own, None, ""
+        self._record, self._error = None, ""
+        self._runs.clear()
+
+    def _pass_on(self, event: Event) -> None:
+        """What a hand does; a lesson's own run stays as it was measured, and the hand gets a copy of its start."""
+        stage = self.stage
+        if not isinstance(stage, RunPlayback) or isinstance(event, Pause | SetSpeed):
+            stage.take(event)
+        elif not self._begun:
+            raise InputError("lesson", "a hand on the robot", "your prediction first, then the run")
+        elif isinstance(event, Play) and stage.over:
+            self._play(self._on_stage)
+        elif isinstance(event, Play | StepOnce | LookBack):
+            stage.take(event)
+        else:
+            self._try_out(stage)
+            if not isinstance(event, Reset | Branch):
+                self.stage.take(event)
+
+    def _try_out(self, stage: RunPlayback) -> None:
+        """The start of a run without its pushes, for a hand to try."""
+        scenario = stage.session.scenario
+        self.stage = Playback(changed(scenario, pushes=()), stage.session.robot)
+        self._on_stage = ""
+
+    def _measure(self) -> None:
+        """Measure the runs once all have been seen."""
+        lesson = self._lesson
+        if lesson is None or self._record is not None or self._error or self.stage is self._own:
+            return
+        if any(label not in self._runs or not self._runs[label].over for label in lesson.runs):
+            return
+        try:
+            sessions = {label: self._runs[label].session for label in lesson.runs}
+            self._record = recorded(measured(lesson, sessions))
+        except LabError as error:
+            self._error = str(error)
