@@ -190,7 +190,9 @@ class _GainPanel:
         self._folder = gui.add_folder("Gains", expand_by_default=False)
         with self._folder:
             self._sliders = {
-                gain.name: Bound[float](_slider(gui, gain, truth.gains[gain.name]), _setter(gain.name), post)
+                gain.name: Bound[float](
+                    gain_slider(gui, gain, truth.gains[gain.name]), _setter(gain.name), post
+                )
                 for gain in self._declared.values()
             }
         self._changed = gui.add_html("")
@@ -233,7 +235,8 @@ def changed_gains(declared: Sequence[GainInfo] | Any, values: dict[str, float]) 
     ]
 
 
-def _slider(gui: viser.GuiApi, gain: GainInfo, value: float) -> Any:
+def gain_slider(gui: viser.GuiApi, gain: GainInfo, value: float) -> Any:
+    """A slider as a gain declares it."""
     unit = _unit(gain)
     return gui.add_slider(
         f"{_words(gain)} ({unit})" if unit else _words(gain),

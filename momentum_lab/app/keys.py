@@ -22,6 +22,8 @@ _HELP = """
 **P** push &nbsp;·&nbsp; **K** play or pause &nbsp;·&nbsp; **J** step 1 ms &nbsp;·&nbsp; **L** step 20 ms
 &nbsp;·&nbsp; **R** stand up again &nbsp;·&nbsp; **1 2 3** tabs &nbsp;·&nbsp; **H** this help
 
+A lesson, in the *Learn* tab on the left: **N** next step &nbsp;·&nbsp; **U** the step before.
+
 *Look back* shows what was; **B** goes on from the instant you look at, with other gains if you like.
 
 The robot stands on its own; you push it. The controller moves the **CoP** (◆) under the feet to bring the
@@ -36,10 +38,17 @@ Drag to turn the picture, right-drag to move it, scroll to come closer.
 """
 
 
-def add_keys(client: viser.ClientHandle, post: Post, push: PushPanel, status: StatusBar, tabs: Tabs) -> None:
+def add_keys(
+    client: viser.ClientHandle,
+    post: Post,
+    push_now: Callable[[], None],
+    push: PushPanel,
+    status: StatusBar,
+    tabs: Tabs,
+) -> None:
     """Give a browser tab its keys; all of them are in the command palette too."""
     keys: tuple[tuple[str, Any, Callable[[], None]], ...] = (
-        ("Push", "P", push.apply),
+        ("Push", "P", push_now),
         ("Repeat the last push", None, push.apply_again),
         ("Play or pause", "K", status.toggle),
         ("Step 1 ms", "J", lambda: post(StepOnce(SMALL_STEP))),

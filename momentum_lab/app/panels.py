@@ -1,14 +1,18 @@
-"""All panels of one browser tab: status and tabs on the right, plots on the left, keys for everything."""
+"""All panels of one browser tab: status and tabs on the right, plots and lessons on the left, keys for everything."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.keys import add_keys
+from momentum_lab.app.learn_panel import LearnPanel
+from momentum_lab.app.lesson_wire import LessonEvent
+from momentum_lab.app.library import Library
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
@@ -21,6 +25,7 @@ from momentum_lab.app.wire import Truth
 _RIGHT, _LEFT = 350.0, 350.0
 # Pages narrower than this, width over height, have no room for plots beside the picture or for many labels.
 _ROOMY = 1.1
+_PLOTS, _LEARN = ("Plots", viser.Icon.CHART_LINE), ("Learn", viser.Icon.SCHOOL)
 
 
 class Panels:
@@ -34,6 +39,9 @@ class Panels:
         redraw: asks for a new picture.
         choices: robots and scenarios to choose from.
         truth: what is the case at the start.
+        ask: where a lesson's events go.
+        library: the lessons.
+        lesson: the script of the lesson to begin with.
     """
 
     def __init__(
@@ -45,6 +53,9 @@ class Panels:
         redraw: Callable[[], None],
         choices: Choices,
         truth: Truth,
+        ask: Callable[[LessonEvent], None],
+        library: Library,
+        lesson: Path | None = None,
     ) -> None:
         gui = client.gui
         gui.configure_theme(show_share_button=False, show_logo=False, brand_color=(0, 114, 178))
@@ -61,14 +72,31 @@ class Panels:
             self.control = ControlPanel(gui, post, choices, truth)
         with group.add_tab("View", viser.Icon.EYE):
             ViewPanel(gui, self.settings, look, redraw)
-        plots = gui.add_panel()
-        with plots.add_tab("Plots", viser.Icon.CHART_LINE):
+        left = gui.add_panel()
+        # The browser opens the first tab.
+        tabs = [
+            left.add_tab(label, icon)
+            for label, icon in ((_PLOTS, _LEARN) if lesson is None else (_LEARN, _PLOTS))
+        ]
+        learn_tab, plots_tab = tabs if lesson is not None else tabs[::-1]
+        with plots_tab:
             gui.add_html(
                 html.legend([key for key in STYLES if key in PRESETS[START_PRESET]], explained=False)
             )
             self.plots = Plots(gui)
-        plots.dock_left()
-        plots.set_width(_LEFT)
-        if not roomy:
-            plots.minimize()
-        add_keys(client, post, self.push, self.status, Tabs(client, group))
+        left.dock_left()
+        left.set_width(_LEFT)
+        if not roomy and lesson is None:
+            left.minimize()
+
+        def opened(on: bool) -> None:
+            group.visible = not on  # a lesson has the few controls that matter beside its text
+
+        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, opened, truth)
+        self.learn.start(lesson)
+        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group))
+
+    def _push(self) -> None:
+        """Push as the lesson says, or as the push tab does."""
+        if not self.learn.push():
+            self.push.apply()

@@ -10,12 +10,14 @@ import threading
 import warnings
 import webbrowser
 from collections.abc import Iterator
+from pathlib import Path
 from types import TracebackType
 
 import rich
 import viser
 
 from momentum_lab.app.control_panel import Choices
+from momentum_lab.app.library import Library
 from momentum_lab.app.link import warm_up
 from momentum_lab.app.profile import NORMAL, RenderProfile
 from momentum_lab.app.robots import RobotShelf
@@ -39,6 +41,8 @@ class LabServer:
         host: address to listen on.
         port: port to listen on; 0 for any free one.
         profile: how much browsers have to draw.
+        library: the lessons; None: those that ship with the package.
+        lesson: the script of the lesson that every browser tab begins with.
 
     Raises:
         ServerError: the host or the port cannot be used.
@@ -46,9 +50,16 @@ class LabServer:
     """
 
     def __init__(
-        self, scenario: Scenario, host: str = "127.0.0.1", port: int = 0, profile: RenderProfile = NORMAL
+        self,
+        scenario: Scenario,
+        host: str = "127.0.0.1",
+        port: int = 0,
+        profile: RenderProfile = NORMAL,
+        library: Library | None = None,
+        lesson: Path | None = None,
     ) -> None:
         _check_address(host, port)
+        self._library, self._lesson = library or Library(), lesson
         self._scenario, self._profile = scenario, profile
         warm_up()
         self._shelf = RobotShelf()
@@ -107,7 +118,13 @@ class LabServer:
                 client.add_notification("The lab is full", f"{MOST_VISITORS} tabs are open: close one.")
                 return
             self._visitors[client.client_id] = Visitor(
-                client, self._shelf, self._scenario, self._choices, self._profile
+                client,
+                self._shelf,
+                self._scenario,
+                self._choices,
+                self._profile,
+                self._library,
+                self._lesson,
             )
 
     def _farewell(self, client: viser.ClientHandle) -> None:
@@ -127,6 +144,8 @@ def serve(
     port: int = 8080,
     open_browser: bool = True,
     profile: RenderProfile = NORMAL,
+    library: Library | None = None,
+    lesson: Path | None = None,
 ) -> None:
     """Serve the lab until Ctrl+C or SIGTERM.
 
@@ -136,12 +155,14 @@ def serve(
         port: port to listen on; 0 for any free one.
         open_browser: whether to open the page in this machine's browser.
         profile: how much browsers have to draw.
+        library: the lessons; None: those that ship with the package.
+        lesson: the script of the lesson that every browser tab begins with.
 
     Raises:
         ServerError: the host or the port cannot be used.
         InputError: the scenario cannot start, or a mesh of its robot is missing.
     """
-    with _ended_by_signal() as ended, LabServer(scenario, host, port, profile) as lab:
+    with _ended_by_signal() as ended, LabServer(scenario, host, port, profile, library, lesson) as lab:
         print(f"momentum lab: {lab.url}  (Ctrl+C ends it)", flush=True)
         if open_browser:
             webbrowser.open(lab.url)

@@ -6,11 +6,13 @@ import math
 import threading
 import traceback
 from dataclasses import dataclass
+from pathlib import Path
 
 import viser
 
 from momentum_lab.app.camera import LOOSE, START_VIEW, TIGHT, VIEWS, Camera
 from momentum_lab.app.control_panel import Choices
+from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
 from momentum_lab.app.overlays import Picture, overlays
@@ -56,6 +58,8 @@ class Visitor:
         scenario: what the session starts with.
         choices: what can be chosen.
         profile: how much to draw.
+        library: the lessons.
+        lesson: the script of the lesson to begin with.
     """
 
     def __init__(
@@ -65,7 +69,10 @@ class Visitor:
         scenario: Scenario,
         choices: Choices,
         profile: RenderProfile,
+        library: Library,
+        lesson: Path | None = None,
     ) -> None:
+        self._library, self._lesson = library, lesson
         self._client, self._shelf, self._profile = client, shelf, profile
         self._choices = choices
         self._link = Link(scenario, choices.robots, choices.scenarios)
@@ -152,7 +159,16 @@ class Visitor:
 
     def _furnish(self, truth: Truth) -> Panels:
         self._panels = Panels(
-            self._client, self.post, self.tell, self._look, self._link.want_frame, self._choices, truth
+            self._client,
+            self.post,
+            self.tell,
+            self._look,
+            self._link.want_frame,
+            self._choices,
+            truth,
+            self._link.ask,
+            self._library,
+            self._lesson,
         )
         if self._stage is not None:
             self._receive(self._panels, self._stage)
@@ -161,6 +177,7 @@ class Visitor:
     def _receive(self, panels: Panels, stage: Stage) -> None:
         """Fit the panels to the robot on stage."""
         panels.push.set_robot(stage.loaded)
+        panels.learn.set_robot(stage.loaded)
         panels.plots.begin(stage.loaded.model, stage.loaded.layout)
         panels.settings.changed = True
 
@@ -182,6 +199,7 @@ class Visitor:
         status = status_of(sample, loaded.model, fall, truth.failure, truth.stopped)
         panels.status.follow(truth, status, sample.number("time"))
         panels.control.follow(truth)
+        panels.learn.follow(truth, sample.number("time"), frame.lesson)
         panels.control.see(sample)
         if truth.fall is None:
             panels.push.see(sample)

@@ -14,6 +14,7 @@ from momentum_lab.lesson.loader import find_lesson, lesson_folder, load_lesson
 from momentum_lab.lesson.parts import Choice, Explain, Lesson, Number, Step
 from momentum_lab.lesson.playing import Played, play_lesson, report, told
 from momentum_lab.robot.model import RobotModel
+from momentum_lab.scenario import changed, load_scenario
 from momentum_lab.session import Session
 
 _CLAIM_FAILED = 1
@@ -52,13 +53,21 @@ def _headless(chosen: Lesson, args: Namespace) -> int:
 
 
 def _in_browser(chosen: Lesson, args: Namespace) -> int:
-    scenario = chosen.first_run.for_robot(args.robot or chosen.robots[0])
+    scenario = changed(load_scenario("stand"), robot=args.robot or chosen.robots[0])
     Session(scenario, capacity=1)
 
+    from momentum_lab.app.library import Library
     from momentum_lab.app.server import serve
 
     print(f"{chosen.number}. {chosen.title}\n{chosen.question}", flush=True)
-    serve(scenario, host=args.host, port=args.port, open_browser=not args.no_browser)
+    serve(
+        scenario,
+        host=args.host,
+        port=args.port,
+        open_browser=not args.no_browser,
+        library=Library(chosen.file.parent),
+        lesson=chosen.file,
+    )
     return 0
 
 

@@ -96,8 +96,9 @@ def sides(text: str) -> tuple[ast.expr, ast.expr]:
 
 
 def course(equation: Equation, session: Session) -> dict[str, np.ndarray]:
-    """What every symbol is over time (n,), or as one number (); differences over a tick are one shorter than what
-    they come from, so all are as long as the shortest.
+    """What every symbol is over time (n,), or as one number ().
+
+    Differences over a tick are one shorter than what they come from: all are cut to the shortest.
     """
     found = {name: np.asarray(symbol.values(session)) for name, symbol in equation.symbols.items()}
     length = min((len(value) for value in found.values() if value.ndim), default=1)
@@ -174,7 +175,7 @@ def _write(node: ast.expr, labels: Mapping[str, str], text: str) -> str:
     """A tree as MathML."""
     match node:
         case ast.Name(id=name):
-            return _labelled(_symbol(name), labels.get(name))
+            return _labelled(symbol_mathml(name), labels.get(name))
         case ast.Constant(value=int() | float() as number):
             return f"<mn>{number:g}</mn>"
         case ast.UnaryOp(op=ast.USub(), operand=operand):
@@ -204,7 +205,7 @@ def _bracketed(node: ast.expr, rank: int, labels: Mapping[str, str], text: str) 
     return f"<mrow><mo>(</mo>{written}<mo>)</mo></mrow>" if loose else written
 
 
-def _symbol(name: str) -> str:
+def symbol_mathml(name: str) -> str:
     """A name as MathML: dots for derivatives, a Greek letter, an index."""
     base, _, index = name.partition("_")
     letters = "|".join(("[A-Za-z]", *_GREEK))

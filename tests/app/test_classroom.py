@@ -9,7 +9,17 @@ from momentum_lab.app.classroom import Classroom, RunPlayback
 from momentum_lab.app.lesson_wire import LeaveLesson, OpenLesson, PlayRun, ShowRun
 from momentum_lab.app.playback import Playback
 from momentum_lab.errors import InputError
-from momentum_lab.events import ApplyPush, Branch, Pause, Play, Reset, SetGain, SetPriority, SetSpeed, StepOnce
+from momentum_lab.events import (
+    ApplyPush,
+    Branch,
+    Pause,
+    Play,
+    Reset,
+    SetGain,
+    SetPriority,
+    SetSpeed,
+    StepOnce,
+)
 from momentum_lab.lesson.record import LessonRecord, rehearsed
 from momentum_lab.physics.push import Push
 from momentum_lab.robot.model import RobotModel
@@ -111,9 +121,7 @@ def test_play_at_the_end_of_a_run_plays_it_again(own: Playback, lesson: OpenLess
 
 
 @pytest.mark.parametrize("playing", [True, False])
-def test_leaving_gives_the_persons_own_session_back(
-    own: Playback, lesson: OpenLesson, playing: bool
-) -> None:
+def test_leaving_gives_the_persons_own_session_back(own: Playback, lesson: OpenLesson, playing: bool) -> None:
     room = Classroom(own)
     own.take(Play() if playing else Pause())
     session, ticks, truth = own.session, own.session.ticks, own.truth(1.0)

@@ -23,7 +23,7 @@ class Desk:
         push = FakeHandle(apply=lambda: note("push"), apply_again=lambda: note("again"))
         status = FakeHandle(toggle=lambda: note("toggle"))
         tabs = FakeHandle(open=lambda index: note(f"tab {index}"))
-        add_keys(self.client, note, push, status, tabs)
+        add_keys(self.client, note, push.apply, push, status, tabs)
 
     def _add_command(self, label: str, hotkey: str | None = None) -> FakeHandle:
         command = FakeHandle()
