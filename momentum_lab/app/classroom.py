@@ -29,7 +29,7 @@ class RunPlayback(Playback):
     """
 
     def __init__(self, run: Run, robot: RobotModel) -> None:
-        self._staging = Staging(run)
+        self._staging: Staging | None = Staging(run)
         super().__init__(run.for_robot(robot.spec.name), robot)
 
     @property
@@ -37,10 +37,14 @@ class RunPlayback(Playback):
         """Whether it has been played to its end."""
         return is_over(self.session)
 
+    def release(self) -> None:
+        """Let it go on as a hand likes: nothing is to come any more, not even its end."""
+        self._staging, self.playing = None, True
+
     def tick(self, count: int) -> None:
         """Some ticks, fewer if the run comes to its end."""
         for _ in range(count):
-            if self.stopped is not None or not self._staging.prepare(self.session):
+            if self.stopped is not None or (self._staging and not self._staging.prepare(self.session)):
                 self.playing = False
                 return
             super().tick(1)
@@ -67,6 +71,7 @@ class Classroom:
         self._lesson: Lesson | None = None
         self._robot: RobotModel | None = None
         self._runs: dict[str, RunPlayback] = {}
+        self._seen: dict[str, None] = {}
         self._on_stage = ""
         self._begun = False
         self._record: LessonRecord | None = None
@@ -98,10 +103,11 @@ class Classroom:
 
     def news(self) -> LessonNews | None:
         """How far the lesson has come, if that is not what was told last."""
+        self._seen |= {label: None for label, playback in self._runs.items() if playback.over}
         self._measure()
         news = LessonNews(
             "" if self._lesson is None else str(self._lesson.file),
-            tuple(label for label, playback in self._runs.items() if playback.over),
+            tuple(self._seen),
             self._on_stage,
             self._record,
             self._error,
@@ -156,11 +162,12 @@ class Classroom:
         self.stage, self._lesson, self._on_stage = self._own, None, ""
         self._record, self._error = None, ""
         self._runs.clear()
+        self._seen.clear()
 
     def _pass_on(self, event: Event) -> None:
         """What a hand does; a lesson's own run stays as it was measured, and the hand gets a copy of its start."""
         stage = self.stage
-        if not isinstance(stage, RunPlayback) or isinstance(event, Pause | SetSpeed):
+        if not isinstance(stage, RunPlayback) or not self._on_stage or isinstance(event, Pause | SetSpeed):
             stage.take(event)
         elif not self._begun:
             raise InputError("lesson", "a hand on the robot", "your prediction first, then the run")
@@ -168,9 +175,11 @@ class Classroom:
             self._play(self._on_stage)
         elif isinstance(event, Play | StepOnce | LookBack):
             stage.take(event)
+        elif isinstance(event, Branch):
+            self._branch(stage)
         else:
             self._try_out(stage)
-            if not isinstance(event, Reset | Branch):
+            if not isinstance(event, Reset):
                 self.stage.take(event)
 
     def _try_out(self, stage: RunPlayback) -> None:
@@ -178,6 +187,16 @@ class Classroom:
         scenario = stage.session.scenario
         self.stage = Playback(changed(scenario, pushes=()), stage.session.robot)
         self._on_stage = ""
+
+    def _branch(self, stage: RunPlayback) -> None:
+        """A copy of a run at the instant that is looked at, for a hand to go on from; the same bits lead there."""
+        instant = stage.shown.number("time")
+        if self._lesson is not None:
+            copy = RunPlayback(self._lesson.runs[self._on_stage], stage.session.robot)
+            while copy.latest.number("time") < instant:
+                copy.tick(1)
+            copy.release()
+            self.stage, self._on_stage = copy, ""
 
     def _measure(self) -> None:
         """Measure the runs once all have been seen."""

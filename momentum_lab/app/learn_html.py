@@ -10,6 +10,8 @@ from momentum_lab.lesson.equation import symbol_mathml
 from momentum_lab.lesson.record import EquationRecord, StepRecord
 
 LETTERS = "ABCDEFGH"
+LIST = '<span class="learn-list"></span>'
+"""Buttons after it look like a list."""
 # A number that is no further from the measured one than this part of what could be predicted is close.
 CLOSE = 0.1
 _BLUE, _GREEN, _RED = "#0072b2", COLORS["green"], COLORS["vermillion"]
@@ -20,21 +22,27 @@ _STYLE = (
     ".learn .o{display:flex;gap:.6em;padding:.32em .5em;margin:.2em 0;border-radius:.35em;"
     "border:1px solid #d5dbe0}.learn .o b{flex:none;width:1em}"
     f".learn .o.mine{{border-color:{_BLUE};background:#e8f3fa}}"
-    f".learn .bar{{height:.3em;background:#e3e7ea;margin:.15em 0 .45em 0}}.learn .bar div{{height:100%;background:{_BLUE}}}"
+    ".learn .bar{height:.3em;background:#e3e7ea;margin:.15em 0 .45em 0}"
+    f".learn .bar div{{height:100%;background:{_BLUE}}}"
     ".learn .card{border-left:.3em solid;padding:.3em .6em;margin:.4em 0;background:#f6f7f8}"
     ".learn .eq{overflow-x:auto;padding:.5em 0;text-align:center}"
     ".learn math{font-size:1.12em}.learn mtext{font-size:.62em;color:#0b4f79}"
     ".learn td{padding:0 .6em .1em 0;vertical-align:top}.learn .n{font-variant-numeric:tabular-nums}"
     ".learn .err{border:1px solid;border-radius:.35em;padding:.5em .6em;overflow-wrap:anywhere}"
-    "div:has(>.learn-list)~* button .mantine-Button-inner{justify-content:flex-start}"
-    "div:has(>.learn-list)~* button{height:2.1em!important}"
-    "div:has(>.learn-list)~*{margin-bottom:-.25em}</style>"
+    # What is chosen from is a list with whole sentences in it, not a row of buttons.
+    "div:has(>.learn-list)~* button{height:auto!important;min-height:2.1em;background:#f6f8f9!important;"
+    "color:#1f2a33!important;border:1px solid #d5dbe0!important}"
+    "div:has(>.learn-list)~* button:disabled{color:#6b6b6b!important}"
+    "div:has(>.learn-list)~* button:hover:not(:disabled){border-color:#0072b2!important}"
+    "div:has(>.learn-list)~* .mantine-Button-inner{justify-content:flex-start}"
+    "div:has(>.learn-list)~* .mantine-Button-label{white-space:normal;text-align:left;height:auto;"
+    "overflow:visible;padding:.3em .2em;line-height:1.3;font-weight:450;font-size:1.08em}</style>"
 )
 
 
 def welcome(done: int, count: int) -> str:
     """What stands above the list of lessons."""
-    return f'{_STYLE}<span class="learn-list"></span>' + _box(
+    return f"{_STYLE}{LIST}" + _box(
         "<h3>Learn</h3>Each lesson asks a question: say what you expect, then watch, then compare. "
         f'<span class="dim">{done} of {count} done.</span>'
     )
@@ -69,16 +77,6 @@ def claims(failed: Sequence[str]) -> str:
     """Claims that do not hold on this robot."""
     items = "<br>".join(escape(words) for words in failed)
     return _box(f'<div class="err" style="color:{_RED}"><b>✖ Not true here:</b><br>{items}</div>')
-
-
-def options(step: StepRecord, mine: int | None) -> str:
-    """The options of a choice; the one that was chosen is marked."""
-    items = "".join(
-        f'<div class="o{" mine" if place == mine else ""}"><b>{LETTERS[place]}</b><span>{escape(words)}'
-        f"{_yours() if place == mine else ''}</span></div>"
-        for place, words in enumerate(step.options)
-    )
-    return _box(escape(step.text) + items)
 
 
 def said(step: StepRecord, mine: float | None) -> str:
@@ -197,4 +195,7 @@ def _number(value: float, step: StepRecord) -> str:
 
 
 def _short(value: float) -> str:
-    return "0" if value == 0.0 else f"{value:.3g}".replace("-", "−")
+    """A number with three figures, its power of ten written as people do."""
+    figures, _, power = f"{value:.3g}".partition("e")
+    written = f"{figures}\u202f·\u202f10<sup>{int(power)}</sup>" if power else figures
+    return written.replace("-", "−")

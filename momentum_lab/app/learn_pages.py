@@ -23,6 +23,7 @@ from momentum_lab.lesson.record import EquationRecord
 # How often an equation's numbers change, s.
 _PERIOD = 0.1
 _BLUE = (0, 114, 178)
+_OPEN, _CHOSEN = viser.Icon.CIRCLE, viser.Icon.CIRCLE_DOT
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,24 +73,26 @@ class Page:
 
 
 class ChoicePage(Page):
-    """A prediction by letter."""
+    """A prediction by choosing."""
 
     def _build(self) -> None:
-        gui, place = self._desk.gui, self._walk.place
-        self._shown = gui.add_html("")
-        letters = tuple(learn_html.LETTERS[: len(self._step.options)])
-        self._buttons = gui.add_button_group("I predict", letters)
-        self._buttons.on_click(
-            lambda event: self._desk.answer(float(learn_html.LETTERS.index(event.target.value)))
-        )
-        self._place = place
+        super()._build()
+        gui, self._place = self._desk.gui, self._walk.place
+        gui.add_html(learn_html.LIST)
+        self._buttons = [self._option(gui, place, words) for place, words in enumerate(self._step.options)]
         self.refresh()
 
     def refresh(self) -> None:
         """Show what has changed in the way through the lesson."""
         answer = self._walk.answers.get(self._place)
-        self._shown.content = learn_html.options(self._step, None if answer is None else int(answer))
-        self._buttons.visible = not self._walk.frozen
+        for place, button in enumerate(self._buttons):
+            button.icon = _CHOSEN if place == answer else _OPEN
+            button.disabled = self._walk.frozen
+
+    def _option(self, gui: viser.GuiApi, place: int, words: str) -> viser.GuiButtonHandle:
+        button = gui.add_button(f"{learn_html.LETTERS[place]}  {words}", color="gray", icon=_OPEN)
+        button.on_click(lambda _: self._desk.answer(float(place)))
+        return button
 
 
 class NumberPage(Page):

@@ -1,4 +1,4 @@
-"""The lessons' panel: a list with progress, then a lesson step by step; leaving it gives back what was there before."""
+"""The lessons' panel: a list with progress, then a lesson step by step; leaving it gives back what was before."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ from momentum_lab.app.wire import Truth
 from momentum_lab.errors import LabError
 from momentum_lab.lesson.record import LessonRecord
 
-_BACK, _NEXT, _SKIP, _FINISH = "Back", "Next", "Skip", "Finish"
+_BACK, _LEAVE = "Back  (U)", "Leave the lesson"
+_NEXT, _SKIP, _FINISH = "Next  (N)", "Skip  (N)", "Finish  (N)"
+_BLUE = (0, 114, 178)
 
 
 class LearnPanel:
@@ -262,32 +264,25 @@ class LearnPanel:
     def _add_frame(self) -> None:
         with self._tab:
             self._heading = self._gui.add_html("", order=1.0, visible=False)
-            self._buttons = self._gui.add_button_group(" ", (_BACK, _NEXT), order=1e9, visible=False)
-            self._all = self._gui.add_button(
-                "Leave the lesson", color="gray", icon=viser.Icon.LIST, order=2e9, visible=False
-            )
-        self._buttons.on_click(lambda event: self._pressed(event.target.value))
-        self._all.on_click(lambda _: self._leave())
+            self._forward = self._gui.add_button(_NEXT, color=_BLUE, order=4.0, visible=False)
+            self._others = self._gui.add_button_group(" ", (_BACK, _LEAVE), order=5.0, visible=False)
+        self._forward.on_click(lambda _: self._next())
+        self._others.on_click(lambda event: self._back() if event.target.value == _BACK else self._leave())
 
     def _add_commands(self) -> None:
         self._gui.add_command("Next step of the lesson", hotkey="N").on_trigger(lambda _: self._next())
         self._gui.add_command("Previous step of the lesson", hotkey="U").on_trigger(lambda _: self._back())
 
-    def _pressed(self, name: str) -> None:
-        if name == _BACK:
-            self._back()
-        else:
-            self._next()
-
     def _frame(self) -> None:
         """Show what is around a step, with the buttons that make sense."""
         walk = self._walk
-        for handle in (self._heading, self._all):
+        for handle in (self._heading, self._forward, self._others):
             handle.visible = walk is not None
-        names = () if walk is None else _ways(walk)
-        self._buttons.visible = bool(names)
-        if names and names != self._buttons.options:
-            self._buttons.options = names
+        if walk is not None:
+            self._forward.label, self._forward.disabled = _way_on(walk), walk.waits
+            others = (_BACK, _LEAVE) if walk.place else (_LEAVE,)
+            if others != self._others.options:
+                self._others.options = others
 
     @contextlib.contextmanager
     def _fresh(self) -> Iterator[None]:
@@ -302,9 +297,10 @@ class LearnPanel:
                 yield
 
 
-def _ways(walk: Walk) -> tuple[str, ...]:
-    """Where one can go from a step."""
-    words = _FINISH if walk.last else _NEXT
+def _way_on(walk: Walk) -> str:
+    """What the button says that leads to the next step."""
+    if walk.waits:
+        return "Predict first"
     if walk.step.kind == "play" and any(run not in walk.news.seen for run in walk.runs_to_play()):
-        words = _SKIP
-    return ((_BACK,) if walk.place else ()) + (() if walk.waits else (words,))
+        return _SKIP
+    return _FINISH if walk.last else _NEXT

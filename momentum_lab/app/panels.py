@@ -16,6 +16,7 @@ from momentum_lab.app.library import Library
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
+from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.status_bar import StatusBar
 from momentum_lab.app.tabs import Tabs
 from momentum_lab.app.view_panel import ViewPanel, ViewSettings
@@ -80,23 +81,38 @@ class Panels:
         ]
         learn_tab, plots_tab = tabs if lesson is not None else tabs[::-1]
         with plots_tab:
-            gui.add_html(
-                html.legend([key for key in STYLES if key in PRESETS[START_PRESET]], explained=False)
-            )
-            self.plots = Plots(gui)
+            gui.add_html(_legend())
+            self.plots = usual = Plots(gui)
+        # While a lesson is open its text has the left side, and the plots stand where the tabs were.
+        box = gui.add_form(None, visible=False)
+        with box:
+            gui.add_html(_legend())
+            beside_lesson = Plots(gui)
+        self._all_plots = usual, beside_lesson
         left.dock_left()
         left.set_width(_LEFT)
         if not roomy and lesson is None:
             left.minimize()
 
         def opened(on: bool) -> None:
-            group.visible = not on  # a lesson has the few controls that matter beside its text
+            self.plots = beside_lesson if on else usual
+            group.visible, box.visible = not on, on
+            self.status.invite(not on)
 
         self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, opened, truth)
         self.learn.start(lesson)
         add_keys(client, post, self._push, self.push, self.status, Tabs(client, group))
 
+    def begin_plots(self, robot: LoadedRobot) -> None:
+        """Start with empty plots for a robot."""
+        for plots in self._all_plots:
+            plots.begin(robot.model, robot.layout)
+
     def _push(self) -> None:
         """Push as the lesson says, or as the push tab does."""
         if not self.learn.push():
             self.push.apply()
+
+
+def _legend() -> str:
+    return html.legend([key for key in STYLES if key in PRESETS[START_PRESET]], explained=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Annotated
 
 import msgspec
@@ -39,14 +40,12 @@ class ProgressStore:
 
     def load(self, keys: list[str]) -> None:
         """Ask the browser for the progress in some lessons."""
-        for key in keys:
-            try:
+        with contextlib.suppress(
+            RuntimeError, TimeoutError
+        ):  # the tab has gone, or its browser keeps nothing
+            for key in keys:
                 text = self._client.local_storage.get_item(_PREFIX + key, timeout=_PATIENCE)
-                self._known[key] = msgspec.json.decode(text or "{}", type=Progress)
-            except (RuntimeError, TimeoutError):
-                return  # the tab has gone, or its browser keeps nothing
-            except msgspec.DecodeError:
-                continue  # whatever wrote that, it was not the lab
+                self._known[key] = _progress(text)
 
     def get(self, key: str) -> Progress:
         """The progress in a lesson."""
@@ -57,3 +56,11 @@ class ProgressStore:
         if progress != self._known.get(key):
             self._known[key] = progress
             self._client.local_storage.set_item(_PREFIX + key, msgspec.json.encode(progress).decode())
+
+
+def _progress(text: str | None) -> Progress:
+    """What the browser has kept; anything else than progress, whoever wrote it there, is none."""
+    try:
+        return msgspec.json.decode(text or "{}", type=Progress)
+    except msgspec.DecodeError:
+        return Progress()

@@ -41,6 +41,7 @@ class StatusBar:
     def __init__(self, gui: viser.GuiApi, post: Post, clock: Callable[[], float] = time.monotonic) -> None:
         self._post, self._clock = post, clock
         self._playing = True
+        self._invitation = INVITATION
         self._shown: Status | None = None
         self._since = self._simulated = -math.inf
         self._next = -math.inf
@@ -110,8 +111,12 @@ class StatusBar:
         )
         self._write("time", self._time, line)
         down = truth.fall is not None or truth.stopped is not None
-        self._write("sentence", self._sentence, html.sentence(_sentence(truth)))
+        self._write("sentence", self._sentence, html.sentence(_sentence(truth) or self._invitation))
         self._sentence.visible, self._stand_up.visible = not down, down
+
+    def invite(self, on: bool) -> None:
+        """Whether a robot that nobody has pushed is to be pushed."""
+        self._invitation = INVITATION if on else ""
 
     def end(self) -> None:
         """Say that the session's process has gone."""
@@ -146,10 +151,10 @@ def _buttons(playing: bool) -> tuple[str, ...]:
 
 
 def _sentence(truth: Truth) -> str:
-    """What to do before the first push, what was done after it."""
+    """What was done; nothing before the first push."""
     push = truth.push
     if push is None:
-        return INVITATION
+        return ""
     towards = _DIRECTIONS.get(round(push.direction_deg) % 360, f"{push.direction_deg:.0f}° from forward")
     where = "" if push.body is None else f" on the {push.body.replace('_', ' ')}"
     return f"Last push: {push.force or 0.0:.0f} N for {1e3 * push.duration:.0f} ms {towards}{where}."

@@ -178,7 +178,7 @@ class Visitor:
         """Fit the panels to the robot on stage."""
         panels.push.set_robot(stage.loaded)
         panels.learn.set_robot(stage.loaded)
-        panels.plots.begin(stage.loaded.model, stage.loaded.layout)
+        panels.begin_plots(stage.loaded)
         panels.settings.changed = True
 
     def _draw_scene(self, stage: Stage, panels: Panels, truth: Truth, sample: Sample) -> None:

@@ -93,12 +93,20 @@ def test_hand_tries_on_a_copy_and_the_measured_run_stays(own: Playback, lesson: 
     assert room.stage.session.gains.linear_damping == 3.0
     assert room.stage.session.pushes[0].force == 50.0
     room.take(ShowRun("push", 0.3))
+    played = room.stage.session
     assert room.news().on_stage == "push"
     assert room.stage.shown.number("time") == pytest.approx(0.3)
     np.testing.assert_array_equal(room.stage.session.recording.rows(), rows)
     room.take(Branch())
-    assert room.stage.session.ticks == 1
-    assert room.stage.session.pushes == ()
+    assert room.news().on_stage == ""
+    assert room.stage.playing
+    column = room.stage.session.recording.column("com")
+    np.testing.assert_array_equal(column, played.recording.column("com")[: len(column)])
+    assert len(column) == pytest.approx(301, abs=1)
+    room.take(SetPriority(1.0))
+    room.stage.tick(500)
+    assert room.stage.session.time > 0.75  # past the end of the run
+    assert room.stage.session.priority == 1.0
 
 
 def test_instant_of_a_run_that_nobody_has_seen(own: Playback, lesson: OpenLesson) -> None:
