@@ -13,15 +13,27 @@ from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
 from momentum_lab.control.gains import declared_gains
+from momentum_lab.control.motion import ANGULAR_GOALS
 from momentum_lab.control.registry import CONTROLLERS
-from momentum_lab.events import ApplyPush, Reset, SelectController, SelectRobot, SetGain, SetPriority
+from momentum_lab.events import (
+    ApplyPush,
+    Reset,
+    SelectController,
+    SelectRobot,
+    SetAngularGoal,
+    SetDirections,
+    SetGain,
+    SetPriority,
+)
 from momentum_lab.lesson.parts import PUSH_CONTROLS
+from momentum_lab.momentum.directions import directions, text_of
 from momentum_lab.physics.push import Push
 from momentum_lab.robot.catalog import robot_names
 from momentum_lab.scenario import Scenario
 
 # The strongest push that can be tried, as a part of the one of the lesson.
 _STRONGEST = 2.5
+_MOMENTA = {"all six": "all", "linear and turning about up": "linear+kz", "linear only": "linear"}
 _DEFAULT = Push(velocity_change=0.24)
 
 
@@ -109,8 +121,24 @@ class TryOut:
         elif name == "controller":
             box = gui.add_dropdown("controller", tuple(CONTROLLERS), initial_value=truth.controller)
             self._bind(Bound[str](box, SelectController, self._post), lambda truth: truth.controller)
+        elif name == "momenta":
+            self._add_momenta(gui, truth)
+        elif name == "angular goal":
+            box = gui.add_dropdown("angular goal", ANGULAR_GOALS, initial_value=truth.angular_goal)
+            self._bind(Bound[str](box, _angular_goal, self._post), lambda truth: truth.angular_goal)
         else:
             self._add_gain(gui, name, truth)
+
+    def _add_momenta(self, gui: viser.GuiApi, truth: Truth) -> None:
+        words = {text: name for name, text in _MOMENTA.items()}
+        known = {text_of(directions(text)): name for text, name in words.items()}
+        box = gui.add_dropdown(
+            "momenta held", tuple(_MOMENTA), initial_value=known.get(truth.controlled, next(iter(_MOMENTA)))
+        )
+        self._bind(
+            Bound[str](box, lambda name: SetDirections(_MOMENTA[name]), self._post),
+            lambda truth: known.get(truth.controlled),
+        )
 
     def _add_gain(self, gui: viser.GuiApi, name: str, truth: Truth) -> None:
         gain = declared_gains(CONTROLLERS[truth.controller].gains).get(name)
@@ -124,3 +152,7 @@ class TryOut:
 
     def _bind(self, bound: Bound[Any], value: Callable[[Truth], Any]) -> None:
         self._followed.append((bound, value))
+
+
+def _angular_goal(name: str) -> SetAngularGoal:
+    return SetAngularGoal(next(goal for goal in ANGULAR_GOALS if goal == name))

@@ -18,7 +18,7 @@ from momentum_lab.scenario import Scenario, changed
 Value = float | str
 Values = Mapping[str, Value]
 PUSH_CONTROLS = ("push", "push direction", "push duration", "push height")
-CONTROLS = (*PUSH_CONTROLS, "priority", "robot", "controller")
+CONTROLS = (*PUSH_CONTROLS, "priority", "robot", "controller", "momenta", "angular goal")
 
 
 @dataclass(frozen=True, slots=True)
