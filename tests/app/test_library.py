@@ -1,0 +1,66 @@
+"""The list of lessons, and rehearsals in a process of their own."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from momentum_lab.app import library
+from momentum_lab.app.library import Library
+from momentum_lab.errors import LabError
+from momentum_lab.lesson.loader import lesson_files
+from momentum_lab.lesson.record import rehearsed
+from tests.test_lesson import line_of, written
+
+SHORT = ('"seconds": 2.0', '"seconds": 0.45')
+
+
+def test_every_lesson_is_in_the_list_with_its_question() -> None:
+    entries = Library().entries()
+    assert [entry.file for entry in entries] == lesson_files()
+    assert all(entry.question.endswith("?") and not entry.error for entry in entries)
+
+
+def test_lesson_that_is_no_python_is_in_the_list_with_its_error(tmp_path: Path) -> None:
+    path = written(tmp_path, ("STEPS = (", "STEPS = = ("))
+    (entry,) = Library(tmp_path).entries()
+    assert entry.title == path.name
+    assert entry.error.startswith(f"{path}:{line_of(path, 'STEPS = = (')}: got ")
+
+
+def test_rehearsal_shows_what_a_run_without_a_screen_shows(tmp_path: Path) -> None:
+    path = written(tmp_path, SHORT)
+    lessons = Library(tmp_path)
+    found = lessons.rehearse(path, "g1")
+    assert found == rehearsed(str(path), "g1")
+    assert lessons.rehearse(path, "g1") is found
+    assert [step.kind for step in found.steps] == ["choice", "play", "compare", "explain"]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (('runs["push"].pushes[0]', 'runs["pusch"].pushes[0]'), "got KeyError: 'pusch'"),
+        (("CLAIMS = (", "CLAIMED = ("), "got no CLAIMS"),
+        (('"seconds": 2.0', '"gains": {"linear_dampng": 8.0}'), "got gain linear_dampng"),
+        (("RUNS =", "import os; os._exit(3)\nRUNS ="), "got exit code 3; allowed: a script that runs"),
+    ],
+)
+def test_whatever_is_wrong_is_told_with_file_and_line(tmp_path: Path, change: tuple, words: str) -> None:
+    path = written(tmp_path, SHORT, change) if change[0] != SHORT[0] else written(tmp_path, change)
+    with pytest.raises(LabError, match=rf"01_leaning_in\.py:\d+: {re.escape(words)}"):
+        Library(tmp_path).rehearse(path, "g1")
+
+
+def test_script_that_never_ends_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = written(tmp_path, ("RUNS =", "while True: pass\nRUNS ="))
+    monkeypatch.setattr(library, "_PATIENCE", 0.5)
+    with pytest.raises(LabError, match=r"01_leaning_in\.py:1: got no end within 0\.5 s"):
+        Library(tmp_path).rehearse(path, "g1")
+
+
+def test_script_that_has_gone_is_told(tmp_path: Path) -> None:
+    with pytest.raises(LabError, match=r"02_gone\.py: got nothing"):
+        Library(tmp_path).rehearse(tmp_path / "02_gone.py", "g1")
