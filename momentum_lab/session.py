@@ -162,6 +162,11 @@ class Session:
         return self.robot.at(self.state)
 
     @property
+    def ground(self) -> Ground:
+        """What the robot can touch, as it is and as it will move."""
+        return self._ground
+
+    @property
     def motion_reach(self) -> np.ndarray:
         """How far the present motion moves each joint (na,), rad; zeros without one."""
         return np.zeros(self.robot.na) if self._motion is None else self._motion.reach

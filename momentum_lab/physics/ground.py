@@ -73,9 +73,14 @@ class Ground:
         self._friction = np.array([patch.friction for patch in under_feet])
 
     @property
-    def moves(self) -> bool:
-        """Whether any plate ever moves."""
-        return bool(self.motions)
+    def is_floor(self) -> bool:
+        """Whether the ground under the feet is nothing but the floor."""
+        return not (self.motions or self.changes) and all(
+            patch.friction == self.floor.friction
+            and patch.origin[2] == self.floor.origin[2]
+            and bool(np.array_equal(patch.rotation[:, 2], self.floor.rotation[:, 2]))
+            for patch in self.under_feet
+        )
 
     def at(self, time: float) -> FootGround:
         """The plates at a time of the run, s."""
