@@ -9,6 +9,7 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.control_panel import Choices, ControlPanel
+from momentum_lab.app.ground_panel import GroundPanel
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.learn_panel import LearnPanel
 from momentum_lab.app.lesson_wire import LessonEvent
@@ -40,6 +41,7 @@ class Panels:
         redraw: asks for a new picture.
         choices: robots and scenarios to choose from.
         truth: what is the case at the start.
+        feet: names of the robot's feet.
         ask: where a lesson's events go.
         library: the lessons.
         lesson: the script of the lesson to begin with.
@@ -54,6 +56,7 @@ class Panels:
         redraw: Callable[[], None],
         choices: Choices,
         truth: Truth,
+        feet: tuple[str, ...],
         ask: Callable[[LessonEvent], None],
         library: Library,
         lesson: Path | None = None,
@@ -69,6 +72,7 @@ class Panels:
         group = gui.add_tab_group()
         with group.add_tab("Push", viser.Icon.HAND_MOVE):
             self.push = PushPanel(gui, post, tell, redraw)
+            self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control", viser.Icon.ADJUSTMENTS):
             self.control = ControlPanel(gui, post, choices, truth)
         with group.add_tab("View", viser.Icon.EYE):
