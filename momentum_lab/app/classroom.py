@@ -71,6 +71,7 @@ class Classroom:
         self._lesson: Lesson | None = None
         self._robot: RobotModel | None = None
         self._runs: dict[str, RunPlayback] = {}
+        self._watched: set[str] = set()
         self._seen: dict[str, None] = {}
         self._on_stage = ""
         self._begun = False
@@ -103,7 +104,8 @@ class Classroom:
 
     def news(self) -> LessonNews | None:
         """How far the lesson has come, if that is not what was told last."""
-        self._seen |= {label: None for label, playback in self._runs.items() if playback.over}
+        over = (label for label, playback in self._runs.items() if playback.over)
+        self._seen |= {label: None for label in over if label in self._watched}
         self._measure()
         news = LessonNews(
             "" if self._lesson is None else str(self._lesson.file),
@@ -127,12 +129,13 @@ class Classroom:
         stage = self.stage
         same = stage.session.robot if stage.session.scenario.robot == event.robot else None
         self._robot = same or RobotModel.named(event.robot)
-        self._lesson, self._record, self._error, self._begun = lesson, None, "", False
+        self._lesson, self._begun, self._told = lesson, False, LessonNews()
         self._put_on_stage(next(label for label, run in lesson.runs.items() if run is lesson.first_run))
         self.stage.playing = False
 
     def _play(self, label: str) -> None:
         self._put_on_stage(label)
+        self._watched.add(label)
         self._begun = True
 
     def _show(self, label: str, time: float) -> None:
@@ -163,6 +166,7 @@ class Classroom:
         self._record, self._error = None, ""
         self._runs.clear()
         self._seen.clear()
+        self._watched.clear()
 
     def _pass_on(self, event: Event) -> None:
         """What a hand does; a lesson's own run stays as it was measured, and the hand gets a copy of its start."""
@@ -203,7 +207,7 @@ class Classroom:
         lesson = self._lesson
         if lesson is None or self._record is not None or self._error or self.stage is self._own:
             return
-        if any(label not in self._runs or not self._runs[label].over for label in lesson.runs):
+        if any(label not in self._seen or not self._runs[label].over for label in lesson.runs):
             return
         try:
             sessions = {label: self._runs[label].session for label in lesson.runs}

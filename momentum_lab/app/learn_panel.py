@@ -24,6 +24,7 @@ from momentum_lab.lesson.record import LessonRecord
 
 _BACK, _LEAVE = "Back  (U)", "Leave the lesson"
 _NEXT, _SKIP, _FINISH = "Next  (N)", "Skip  (N)", "Finish  (N)"
+_END = 1e6  # behind the end of every run, s
 _BLUE = (0, 114, 178)
 
 
@@ -206,6 +207,8 @@ class LearnPanel:
             self._ask(ShowRun(step.run, step.time))
         elif step.kind == "play" and not walk.news.seen:
             self._ask(ShowRun(step.run, 0.0))
+        elif step.kind == "compare" and not walk.news.seen:
+            self._ask(ShowRun(walk.played, _END))
 
     def _answer(self, value: float) -> None:
         with self._lock:

@@ -95,8 +95,9 @@ class Panels:
         self._all_plots = usual, beside_lesson
         left.dock_left()
         left.set_width(_LEFT)
-        if not roomy and lesson is None:
-            left.minimize()
+        if not roomy:
+            # A phone shows what is folded away as one line.
+            (left.minimize if lesson is None else left.expand)()
 
         def opened(on: bool) -> None:
             self.plots = beside_lesson if on else usual

@@ -52,9 +52,11 @@ class Walk:
         return bool(self.news.seen)
 
     @property
-    def before_play(self) -> bool:
-        """Whether nothing has been played on the way here."""
-        return all(step.kind != "play" for step in self.record.steps[: self.place + 1])
+    def played(self) -> str:
+        """The run of the last step that is played on the way here, or of the first that will be."""
+        runs = [step.run for step in self.record.steps if step.kind == "play"]
+        behind = [step.run for step in self.record.steps[: self.place + 1] if step.kind == "play"]
+        return behind[-1] if behind else runs[0]
 
     def runs_to_play(self) -> tuple[str, ...]:
         """The runs of the step that is open: its own, the one beside it, and those that no other step plays."""

@@ -115,7 +115,8 @@ def test_instant_of_a_run_that_nobody_has_seen(own: Playback, lesson: OpenLesson
     room.take(ShowRun("push", 0.3))
     assert room.stage.shown.number("time") == pytest.approx(0.3)
     assert not room.stage.playing
-    assert room.news().seen == ("push",)
+    news = room.news()
+    assert (news.on_stage, news.seen, news.record) == ("push", (), None)
 
 
 def test_play_at_the_end_of_a_run_plays_it_again(own: Playback, lesson: OpenLesson) -> None:

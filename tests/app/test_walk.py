@@ -35,6 +35,13 @@ def test_a_step_plays_its_own_runs_and_those_that_no_other_plays() -> None:
     assert Walk(two, place=1).runs_to_play() == ("a",)
 
 
+def test_the_run_on_stage_is_the_last_that_was_played() -> None:
+    again = msgspec.structs.replace(
+        RECORD, steps=(CHOICE, PLAY, COMPARE, StepRecord("play", "Then.", run="a"))
+    )
+    assert [Walk(again, place).played for place in range(4)] == ["b", "b", "b", "a"]
+
+
 def test_predictions_are_compared_once() -> None:
     again = msgspec.structs.replace(RECORD, steps=(CHOICE, PLAY, COMPARE, NUMBER, PLAY, COMPARE))
     assert Walk(again, 2, {0: 1.0}).to_compare() == [(CHOICE, 1.0)]

@@ -185,5 +185,5 @@ def at_step(lab: LabPage, step: int) -> None:
     lab.expect_text(rf"Lesson [0-9]+ · step {step} of [0-9]+")
 
 
-def equation(lab: LabPage) -> str:
-    return lab.page.locator("math[display=block]").inner_text()
+def equation(lab: LabPage) -> str | None:
+    return lab.page.locator("math[display=block]").text_content()
