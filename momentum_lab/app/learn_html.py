@@ -26,7 +26,7 @@ _STYLE = (
     f".learn .bar div{{height:100%;background:{_BLUE}}}"
     ".learn .card{border-left:.3em solid;padding:.3em .6em;margin:.4em 0;background:#f6f7f8}"
     ".learn .eq{overflow-x:auto;padding:.5em 0;text-align:center}"
-    ".learn math{font-size:1.12em}.learn mtext{font-size:.62em;color:#0b4f79}"
+    ".learn math{font-size:1.15em}.learn mtext{font-size:.68em;color:#0b4f79}"
     ".learn td{padding:0 .6em .1em 0;vertical-align:top}.learn .n{font-variant-numeric:tabular-nums}"
     ".learn .err{border:1px solid;border-radius:.35em;padding:.5em .6em;overflow-wrap:anywhere}"
     # What is chosen from is a list with whole sentences in it, not a row of buttons.

@@ -101,7 +101,7 @@ class Panels:
 
         def opened(on: bool) -> None:
             self.plots = beside_lesson if on else usual
-            group.visible, box.visible = not on, on
+            group.visible, box.visible = not on, on and roomy
             self.status.invite(not on)
 
         self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, opened, truth)

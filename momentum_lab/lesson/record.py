@@ -59,9 +59,10 @@ class EquationRecord(msgspec.Struct, frozen=True):
     def mathml(self, time: float) -> str:
         """The equation with the numbers of a time, s."""
         numbers = self.numbers(time)
-        return labelled(
-            self.text, {name: f"{numbers[name]:{one.spec}} {one.unit}" for name, one in self.symbols.items()}
-        )
+        labels = {
+            name: f"{written(numbers[name], one.spec)} {one.unit}" for name, one in self.symbols.items()
+        }
+        return labelled(self.text, labels)
 
     def _at(self, data: bytes, time: float) -> float:
         values = np.frombuffer(data)
@@ -126,6 +127,12 @@ class LessonRecord(msgspec.Struct, frozen=True):
     runs: dict[str, Scenario]
     steps: tuple[StepRecord, ...]
     failed: tuple[str, ...]
+
+
+def written(value: float, spec: str) -> str:
+    """A number as people write it: with a minus, and none before a zero."""
+    text = f"{value:{spec}}"
+    return text.replace("-", "−") if text.strip("-0.") else text.lstrip("-")
 
 
 def rehearsed(file: str, robot: str) -> LessonRecord:

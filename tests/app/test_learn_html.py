@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from momentum_lab.app import learn_html
-from momentum_lab.lesson.record import EquationRecord, StepRecord, SymbolRecord
+from momentum_lab.lesson.record import EquationRecord, StepRecord, SymbolRecord, written
 
 CHOICE = StepRecord("choice", "Who <b>stands</b>?", options=("Both", "None & all"), right=(1,))
 NUMBER = StepRecord("number", "How much?", low=-200.0, high=200.0, unit="N", measured=-78.5)
@@ -66,3 +66,8 @@ def test_equation_carries_the_numbers_of_the_instant() -> None:
 def test_small_numbers_are_written_as_people_do() -> None:
     step = StepRecord("number", "?", low=0.0, high=1.0, measured=2.9e-7)
     assert "2.9\u202f·\u202f10<sup>−7</sup>" in learn_html.compared(step, None)
+
+
+@pytest.mark.parametrize(("value", "text"), [(-0.01, "0.0"), (-0.06, "−0.1"), (12.34, "12.3"), (0.0, "0.0")])
+def test_a_zero_has_no_minus(value: float, text: str) -> None:
+    assert written(value, ".1f") == text
