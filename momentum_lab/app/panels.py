@@ -86,32 +86,44 @@ class Panels:
         learn_tab, plots_tab = tabs if lesson is not None else tabs[::-1]
         with plots_tab:
             gui.add_html(_legend())
-            self.plots = usual = Plots(gui)
-        # While a lesson is open its text has the left side, and the plots stand where the tabs were.
-        box = gui.add_form(None, visible=False)
-        with box:
-            gui.add_html(_legend())
-            beside_lesson = Plots(gui)
-        self._all_plots = usual, beside_lesson
+            self.plots = self._usual_plots = Plots(gui)
+        self._lesson_plots: tuple[viser.GuiFormHandle, Plots] | None = None
+        self._robot: LoadedRobot | None = None
         left.dock_left()
         left.set_width(_LEFT)
         if not roomy:
             # A phone shows what is folded away as one line.
             (left.minimize if lesson is None else left.expand)()
 
-        def opened(on: bool) -> None:
-            self.plots = beside_lesson if on else usual
-            group.visible, box.visible = not on, on and roomy
-            self.status.invite(not on)
-
-        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, opened, truth)
+        self._gui, self._group, self._roomy = gui, group, roomy
+        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, self._lesson_opened, truth)
         self.learn.start(lesson)
         add_keys(client, post, self._push, self.push, self.status, Tabs(client, group))
 
     def begin_plots(self, robot: LoadedRobot) -> None:
         """Start with empty plots for a robot."""
-        for plots in self._all_plots:
+        self._robot = robot
+        lesson = () if self._lesson_plots is None else (self._lesson_plots[1],)
+        for plots in (self._usual_plots, *lesson):
             plots.begin(robot.model, robot.layout)
+
+    def _lesson_opened(self, on: bool) -> None:
+        """While a lesson is open its text has the left side, and plots stand where the tabs were."""
+        if self._lesson_plots is None:
+            self._lesson_plots = self._add_lesson_plots()
+        box, plots = self._lesson_plots
+        self.plots = plots if on else self._usual_plots
+        self._group.visible, box.visible = not on, on and self._roomy
+        self.status.invite(not on)
+
+    def _add_lesson_plots(self) -> tuple[viser.GuiFormHandle, Plots]:
+        box = self._gui.add_form(None, visible=False)
+        with box:
+            self._gui.add_html(_legend())
+            plots = Plots(self._gui)
+        if self._robot is not None:
+            plots.begin(self._robot.model, self._robot.layout)
+        return box, plots
 
     def _push(self) -> None:
         """Push as the lesson says, or as the push tab does."""
