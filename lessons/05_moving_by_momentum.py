@@ -69,7 +69,7 @@ STEPS = (
         "that give it (Eq. 25). The hip kicks; all other joints are its own affair."
     ),
     lab.Number(
-        "Angular momentum is to stay zero. When the leg has most of it, how much does the rest of the body take back?",
+        "Angular momentum is to stay zero. When the leg has most of it, how much does the rest take back?",
         "paid",
         0,
         150,
@@ -80,7 +80,9 @@ STEPS = (
         (
             lab.Option("With all six held", lambda m: m["held"] > 1.2 * m["free"]),
             lab.Option("With two let go", lambda m: m["free"] > 1.2 * m["held"]),
-            lab.Option("Much the same", lambda m: max(m["held"], m["free"]) <= 1.2 * min(m["held"], m["free"])),
+            lab.Option(
+                "Much the same", lambda m: max(m["held"], m["free"]) <= 1.2 * min(m["held"], m["free"])
+            ),
         ),
     ),
     lab.Play("Look at the upper body, not at the leg.", "held", ("momenta",), beside="free"),

@@ -67,9 +67,7 @@ STEPS = (
         (
             lab.Option("Nothing: the arms cancel each other", lambda m: m["zero"] < 1.0 and m["arms"] > 80.0),
             lab.Option("The arms hardly swing", lambda m: m["arms"] <= 80.0),
-            lab.Option(
-                "The body turns against the arms", lambda m: m["zero"] >= 1.0 and m["arms"] > 80.0
-            ),
+            lab.Option("The body turns against the arms", lambda m: m["zero"] >= 1.0 and m["arms"] > 80.0),
         ),
     ),
     lab.Number(
@@ -92,7 +90,9 @@ STEPS = (
         lab.Equation(
             "k = k_arms + k_rest",
             {
-                "k": lab.Symbol(lambda s: shares(s)[:, 2], "N m s", "of the body, about the arms' axis", ".2f"),
+                "k": lab.Symbol(
+                    lambda s: shares(s)[:, 2], "N m s", "of the body, about the arms' axis", ".2f"
+                ),
                 "k_arms": lab.Symbol(lambda s: shares(s)[:, 0], "N m s", "of the swinging joints", ".2f"),
                 "k_rest": lab.Symbol(lambda s: shares(s)[:, 1], "N m s", "of everything else", ".2f"),
             },

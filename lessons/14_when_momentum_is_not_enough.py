@@ -1,7 +1,6 @@
 """When momentum is not enough
 
-The ground has given all it can, and the robot still falls. Where does the next foot belong, and what can no
-controller of momentum know?
+The ground gave all it can, and the robot falls. Where must the next foot go, and what can no momentum tell?
 """
 
 import numpy as np
@@ -23,7 +22,7 @@ def toes(session):
 
 
 def beyond(session, time):
-    """How far in front of the toes the capture point is, mm."""
+    """How far in front of the toes the capture point is, mm; the push ends at 0.3 s."""
     tick = int(np.searchsorted(times(session), time))
     return 1e3 * float(session.recording.column("capture_point")[tick, 0] - toes(session))
 
@@ -36,45 +35,38 @@ def omega(session):
 def slope(session):
     """Rate of the capture point, from differences over a tick, m/s; while the ground carries its weight."""
     rate = np.diff(session.recording.column("capture_point")[:, 0]) / session.scenario.timestep
-    carried = ground_force(session)[:, 2] > 0.9 * session.robot.mass * 9.81
-    after = times(session) > push_end(session)
-    return rate[: int(np.flatnonzero(after & ~carried)[0])]
+    light = ground_force(session)[:, 2] <= 0.9 * session.robot.mass * 9.81
+    return rate[: int(np.flatnonzero(light & (times(session) > push_end(session)))[0])]
 
 
 def turned_by_a_loop(session):
     """How far a hip that goes round in a circle turns a body without any momentum, degrees."""
     robot, where = session.robot, session.recording.column("q")[0].copy()
-    kick, twist = hip_joints(robot)
+    kick, side = hip_joints(robot)
     start = pin.Quaternion(where[3:7]).toRotationMatrix()
     for phase in np.linspace(0.0, 2.0 * np.pi, STEPS_OF_LOOP, endpoint=False):
         rates = np.zeros(robot.nv)
-        rates[kick], rates[twist] = -SWING * np.sin(phase), SWING * np.cos(phase)
+        rates[kick], rates[side] = -SWING * np.sin(phase), SWING * np.cos(phase)
         centroidal = robot.at(State(where, np.zeros(robot.nv))).centroidal_map
         rates[:6] = -np.linalg.solve(centroidal[:, :6], centroidal[:, 6:] @ rates[6:])
         where = pin.integrate(robot.model, where, rates * 2.0 * np.pi / STEPS_OF_LOOP)
-    end = pin.Quaternion(where[3:7]).toRotationMatrix()
-    return float(np.degrees(np.linalg.norm(pin.log3(end @ start.T))))
+    turn = pin.Quaternion(where[3:7]).toRotationMatrix() @ start.T
+    return float(np.degrees(np.linalg.norm(pin.log3(turn))))
 
 
 def hip_joints(robot):
     """Columns of the right hip's joints that swing the leg forward and sideways."""
-    names = {"talos": ("leg_right_3_joint", "leg_right_2_joint")}
-    wanted = names.get(robot.spec.name, ("right_hip_pitch_joint", "right_hip_roll_joint"))
-    return [6 + robot.joint_names.index(name) for name in wanted]
+    talos, g1 = ("leg_right_3_joint", "leg_right_2_joint"), ("right_hip_pitch_joint", "right_hip_roll_joint")
+    names = talos if robot.spec.name == "talos" else g1
+    return [6 + robot.joint_names.index(name) for name in names]
 
 
 MEASURES = {
     "push": lab.Measure(lambda runs: runs["push"].pushes[0].force, "N"),
     "fell": lab.Measure(lambda runs: runs["push"].fall.time, "s", ".2f"),
-    "now": lab.Measure(lambda runs: beyond(runs["push"], push_end(runs["push"])), "mm"),
-    "later": lab.Measure(lambda runs: beyond(runs["push"], push_end(runs["push"]) + 0.3), "mm"),
-    "growth": lab.Measure(
-        lambda runs: (
-            beyond(runs["push"], push_end(runs["push"]) + 0.3) / beyond(runs["push"], push_end(runs["push"]))
-        ),
-        "times",
-        ".1f",
-    ),
+    "now": lab.Measure(lambda runs: beyond(runs["push"], 0.3), "mm"),
+    "later": lab.Measure(lambda runs: beyond(runs["push"], 0.6), "mm"),
+    "growth": lab.Measure(lambda runs: beyond(runs["push"], 0.6) / beyond(runs["push"], 0.3), "times", ".1f"),
     "swing": lab.Measure(lambda runs: float(np.degrees(SWING)), "degrees"),
     "turned": lab.Measure(lambda runs: turned_by_a_loop(runs["push"]), "degrees", ".1f"),
 }
@@ -85,7 +77,7 @@ STEPS = (
         "and that is not enough: it needs a new foothold."
     ),
     lab.Number(
-        "As the push ends, the capture point is {now} in front of the toes. How far is it three tenths of a second later?",
+        "As the push ends, the capture point is {now} in front of the toes. And three tenths of a second later?",
         "later",
         0,
         500,
