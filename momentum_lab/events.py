@@ -59,7 +59,10 @@ class SetFriction(msgspec.Struct, frozen=True, tag=True):
 
 
 class MoveGround(msgspec.Struct, frozen=True, tag=True):
-    """Let the plate under a foot begin a motion now; an empty name means all feet, as if on one plate."""
+    """Let the plate under a foot begin a motion now; an empty name means all feet, as if on one plate.
+
+    The motion's own start and stop are ignored.
+    """
 
     motion: PlateMotion
     foot: str = ""

@@ -14,6 +14,7 @@ from momentum_lab.control.motion import ANGULAR_GOALS, AngularGoal
 from momentum_lab.errors import InputError, ScenarioError
 from momentum_lab.momentum.directions import directions
 from momentum_lab.paths import ASSETS
+from momentum_lab.physics.ground import check_motion
 from momentum_lab.physics.plate import AXES, Course, Friction, FrictionChange, Plate, PlateMotion
 from momentum_lab.physics.push import Push, Shape
 
@@ -158,11 +159,26 @@ def _converted(data: dict[str, Any], where: str = "") -> Scenario:
         field = place.strip("`").removeprefix("$").removeprefix(".").removesuffix("[...]")
         given, allowed = _explained(rule, field, data)
         raise ScenarioError((field or "scenario") + where, given, allowed) from error
+    _check_plates(scenario, where)
     try:
         directions(scenario.controlled)
     except InputError as error:
         raise ScenarioError("controlled" + where, scenario.controlled, error.allowed) from error
     return scenario
+
+
+def _check_plates(scenario: Scenario, where: str) -> None:
+    """Refuse a motion of the ground that is too fast or goes too far, with its place."""
+    for i, plate in enumerate(scenario.ground):
+        for j, motion in enumerate(plate.motions):
+            _check_motion(motion, f"ground[{i}].motions[{j}].", where)
+
+
+def _check_motion(motion: PlateMotion, place: str, where: str) -> None:
+    try:
+        check_motion(motion)
+    except InputError as error:
+        raise ScenarioError(place + error.argument + where, error.given, error.allowed) from error
 
 
 def _explained(rule: str, field: str, data: Any) -> tuple[object, str]:

@@ -14,7 +14,7 @@ import pinocchio as pin
 from momentum_lab.control.controller import Controller, ControlOutput
 from momentum_lab.control.fallback import limp
 from momentum_lab.control.gains import with_gains
-from momentum_lab.control.ground_sense import GroundSense, ground_sense, sensed
+from momentum_lab.control.ground_sense import GroundSense, felt_ground, ground_sense
 from momentum_lab.control.handover import Handover
 from momentum_lab.control.motion import AngularGoal, MovingGoal, reach_of
 from momentum_lab.control.planner import OWN
@@ -40,6 +40,7 @@ from momentum_lab.events import (
 )
 from momentum_lab.momentum.directions import Directions, directions
 from momentum_lab.momentum.foot_ground import FootGround
+from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.observe import Tick, observe
 from momentum_lab.physics.ground import Ground, checked_friction
 from momentum_lab.physics.push import Push
@@ -53,6 +54,8 @@ from momentum_lab.terrain import standing_places, start_of, terrain
 
 # A robot whose CoM is lower than this part of its standing height has fallen.
 _FALLEN_HEIGHT = 0.6
+# The force sensor of a foot feels the ground from this part of the weight on.
+_FELT = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +112,8 @@ class Session:
     last_failure: str | None
     _scripted: tuple[Push, ...]
     _ground: Ground
+    _known: FootGround
+    _foot_wrench: np.ndarray
     _motion: MovingGoal | None
     _motion_start: float
     _controller: Controller
@@ -124,7 +129,8 @@ class Session:
         self.scenario = scenario
         self.robot = robot or RobotModel.named(scenario.robot)
         self.stance = _stance(self.robot, scenario.stance)
-        self._ground = self._first_ground = terrain(scenario, self.robot)
+        self._weight = self.robot.mass * GRAVITY
+        self._ground = self._first_ground = terrain(scenario, self.robot, self.stance)
         self._start = _lifted(
             _starting_state(self.robot, scenario, scenario.com_outside), scenario.drop_height
         )
@@ -225,8 +231,8 @@ class Session:
         """The controller's answer; a robot that has fallen goes limp."""
         if self.fall is not None:
             return limp(self.robot, dynamics, self._memory)
-        known = sensed(self.ground_sense, dynamics, plates)
-        reference = self._goal.reference(dynamics, known, self.controlled, self.planner)
+        self._known = self._sensed(dynamics, plates)
+        reference = self._goal.reference(dynamics, self._known, self.controlled, self.planner)
         if self._motion is not None:
             reference = self._motion.applied(reference, self.time - self._motion_start)
         output = self._controller.compute(dynamics, reference, self.gains, self.priority, self._memory)
@@ -235,6 +241,12 @@ class Session:
             self.last_failure = output.failure
         torque = self._without_jump(output.torque)
         return output if torque is output.torque else replace(output, torque=torque)
+
+    def _sensed(self, dynamics: Dynamics, plates: FootGround) -> FootGround:
+        """The ground as the robot takes it to be: as it is told, or as its soles feel it."""
+        if self.ground_sense == "told":
+            return plates
+        return felt_ground(dynamics, self._foot_wrench[:, 2] > _FELT * self._weight, self._known)
 
     def _move(self, name: str, angular_goal: AngularGoal, start: float) -> None:
         """Let a motion begin at a time of the run, s, or end it; what the torque jumps by is faded."""
@@ -273,6 +285,7 @@ class Session:
     def _advance(self, output: ControlOutput, step: Step) -> None:
         self._memory = output.memory
         self._torque = step.torque
+        self._foot_wrench = step.foot_wrench
         self.state = step.state
         self.ticks += 1
         self._tick_of_run += 1
@@ -363,8 +376,7 @@ class Session:
 
     def _change(self, ground: Ground) -> None:
         """Stand on another ground from now on."""
-        self._ground = ground
-        self._simulator = Simulator(self.robot, ground, self.scenario.timestep)
+        self._ground = self._simulator.ground = ground
 
     def _select(self, name: str) -> None:
         entry = controller_entry(name)
@@ -383,6 +395,8 @@ class Session:
         self.last_failure = None
         self._tick_of_run, self._motion_start = 0, 0.0
         self._ground = self._first_ground
+        self._known = self._ground.at(0.0)
+        self._foot_wrench = np.zeros((len(self.robot.soles), 6))
         self._simulator = Simulator(self.robot, self._ground, self.scenario.timestep)
         self._memory = self._controller.initial_memory(self.dynamics)
         self._torque = self._handover = None

@@ -122,8 +122,10 @@ def _fall(session: Session, timing: Timing) -> tuple[bool, float | None, str | N
 
 
 def _com_speed(session: Session) -> float:
-    """Speed of the CoM at the last sample, m/s."""
-    return float(np.linalg.norm(session.recording.latest["com_velocity"]))
+    """Speed of the CoM against the ground under the feet at the last sample, m/s."""
+    ground = session.ground.at(session.recording.latest.number("time"))
+    moving = ground.velocity[list(session.stance), :3].mean(axis=0)
+    return float(np.linalg.norm(session.recording.latest["com_velocity"] - moving))
 
 
 def _impulse_ratio(session: Session, push: Push) -> float:
@@ -146,7 +148,9 @@ def _impulse_ratio(session: Session, push: Push) -> float:
 
 
 def _peak_com_excursion(session: Session) -> float:
-    com = session.recording.column("com")[:, :2]
+    """How far the CoM gets from where it was over the ground, which may move, m."""
+    ground = session.recording.column("ground_pose")[:, list(session.stance), :2].mean(axis=1)
+    com = session.recording.column("com")[:, :2] - (ground - ground[0])
     return _largest(np.linalg.norm(com - com[0], axis=1))
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from momentum_lab.app.wire import Fallen, Truth
 from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.ground_sense import GroundSense
@@ -180,7 +182,7 @@ class Playback:
             failures=session.solver_failures,
             stopped=self.stopped,
             push=_latest(session.pushes, self.shown.number("time")),
-            friction=tuple(session.ground.friction(self.shown.number("time")).tolist()),
+            friction=self._friction(),
             uneven=not session.ground.is_floor,
             floor=float(session.ground.floor.origin[2]),
             ground_sense=chosen.ground_sense,
@@ -214,6 +216,16 @@ class Playback:
                     controller, gains = name, _values(controller_entry(name).gains)
                     planner = planner if planner in controller_entry(name).planners else OWN
         return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains, sense)
+
+    def _friction(self) -> tuple[float, ...]:
+        """Friction under each foot at what is looked at; what waits for the next tick counts as done."""
+        friction = self.session.ground.friction(self.shown.number("time"))
+        names = self.session.robot.foot_names
+        for event in self._waiting:
+            if isinstance(event, SetFriction):
+                changed_feet = [name == event.foot or not event.foot for name in names]
+                friction = np.where(changed_feet, event.value, friction)
+        return tuple(friction.tolist())
 
     def _fall(self) -> Fallen | None:
         """The fall, unless it is still to come at the instant that is looked at."""
@@ -286,6 +298,7 @@ class Playback:
             planner=truth.planner,
             motion=truth.motion if truth.motion in load_spec(name).motions else "",
             angular_goal=truth.angular_goal,
+            ground_sense=truth.ground_sense,
             gains=gains,
         )
 

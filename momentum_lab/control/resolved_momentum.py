@@ -128,7 +128,7 @@ class ResolvedMomentum:
             dynamics, weight_on_feet(self.robot, dynamics, carrying)
         )
         torque = np.clip(torque, -self.robot.effort_limit, self.robot.effort_limit)
-        acceleration, wrench = motion_of_held_feet(dynamics, torque, carrying)
+        acceleration, wrench = motion_of_held_feet(dynamics, torque, carrying, reference.ground)
         rate = momentum_rate(dynamics, acceleration)
         height = float(dynamics.sole_position[list(carrying), 2].mean())
         cop = cop_from_momentum_rate(rate, dynamics.com_in_world, self.robot.mass, height)
