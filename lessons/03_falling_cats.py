@@ -8,11 +8,11 @@ from functools import lru_cache
 import numpy as np
 
 import momentum_lab.lesson as lab
-from momentum_lab.experiments.flight import given
+from momentum_lab.experiments.flight_push import given
 from momentum_lab.experiments.measured import pelvis_turn, push_end, times
 from momentum_lab.robot.state import State
 
-RUNS = {"cat": lab.Run("flight", {"pushes": ()}), "kicked": lab.Run("flight")}
+RUNS = {"cat": lab.Run("flight"), "kicked": lab.Run("flight-push")}
 
 
 def turn(session):

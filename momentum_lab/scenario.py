@@ -21,7 +21,7 @@ MAX_SECONDS = 3600.0
 MAX_SEED = 2**32 - 1
 MAX_DISTANCE = 1000.0
 MAX_LEAN = 0.1
-MAX_DROP = 2.0
+MAX_DROP = 3.0
 ENGINES = ("pinocchio",)
 
 _CHOICES = {"engine": ENGINES, "angular_goal": ANGULAR_GOALS}

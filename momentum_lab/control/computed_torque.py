@@ -236,7 +236,7 @@ class ComputedTorque:
         nothing = without_ground(self.robot, dynamics, self.initial_memory(dynamics))
         return replace(
             nothing,
-            torque=hold_posture(self.robot, dynamics, reference.posture),
+            torque=hold_posture(self.robot, dynamics, reference),
             momentum_rate_desired=desired,
             failure=f"{reason}; {HOLD_IN_WORDS}",
         )

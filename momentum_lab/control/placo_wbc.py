@@ -104,7 +104,7 @@ class PlacoWbc:
         """The posture held by joint springs, and why; nothing is asked of the ground."""
         return replace(
             without_ground(self.robot, dynamics, None),
-            torque=hold_posture(self.robot, dynamics, reference.posture),
+            torque=hold_posture(self.robot, dynamics, reference),
             momentum_rate_desired=np.concatenate([linear, np.zeros(3)]),
             failure=f"{reason}; {HOLD_IN_WORDS}",
         )

@@ -206,6 +206,6 @@ class ResolvedMomentum:
         nothing = without_ground(self.robot, dynamics, memory)
         return replace(
             nothing,
-            torque=hold_posture(self.robot, dynamics, reference.posture),
+            torque=hold_posture(self.robot, dynamics, reference),
             failure=f"{reason}; {HOLD_IN_WORDS}",
         )
