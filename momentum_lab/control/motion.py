@@ -208,7 +208,9 @@ def reach_of(robot: RobotModel, name: str) -> np.ndarray:
     known = motions_of(robot.spec)
     if name not in known:
         described = ", ".join(known) or "none"
-        raise InputError("motion", name, f"a motion that the file of {robot.spec.name} describes: {described}")
+        raise InputError(
+            "motion", name, f"a motion that the file of {robot.spec.name} describes: {described}"
+        )
     reach = np.zeros((len(MOTIONS[name].courses), robot.na))
     for row, table in zip(reach, MOTIONS[name].courses, strict=True):
         for pattern, angle in robot.spec.motions[table].items():

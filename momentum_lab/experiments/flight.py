@@ -22,6 +22,7 @@ from momentum_lab.session import Session
 
 LEFT, RIGHT, FINER = "loop", "loop the other way", "loop, half the tick"
 _Z = 2
+_HALF_VIEW = 1.1
 
 
 def scenarios(robot: str | None) -> dict[str, Scenario]:
@@ -91,7 +92,10 @@ def claims(runs: Runs) -> list[Claim]:
         at_least("their motion has angular momentum", limbs, 2.0, "N m s"),
         at_most("the whole robot has none, to this part of it", largest(spin(left)) / limbs, 0.02, "of it"),
         at_most(
-            "half the tick has less: this part", largest(spin(finer)) / largest(spin(left)), 0.7, "of the rest"
+            "half the tick has less: this part",
+            largest(spin(finer)) / largest(spin(left)),
+            0.7,
+            "of the rest",
         ),
         at_least("the body has turned to the left by", turned(left), 0.35, "rad"),
         at_most(
@@ -157,12 +161,11 @@ def draw(runs: Runs) -> Any:
     """The loop and what it does to the body; below, what is zero meanwhile, and what a push gives."""
     left, right = runs[LEFT], runs[RIGHT]
     picture, axes = canvas(heading("Flight: turning without angular momentum", left), 2, 4, (17.0, 8.5))
-    widest = int(done(left)[:, 1].argmax())
     _loop(axes[0, 0], left)
-    snapshot(axes[0, 1], left, widest, FRONT, f"from the front, {times(left)[widest]:.2f} s")
+    _widest(axes[0, 1], left)
     for panel, session in zip(axes[0, 2:], (left, right), strict=True):
         degrees = np.degrees(turned(session))
-        title = f"from above: turned by {degrees:.0f} degrees, {'left' if degrees > 0.0 else 'right'}"
+        title = f"from above: turned {'left' if degrees > 0.0 else 'right'} by {abs(degrees):.0f} degrees"
         from_above(panel, session, {"before": (0, MUTED), "after": (len(times(session)) - 1, FORCE)}, title)
     _zero(axes[1, 0], left)
     _turns(axes[1, 1], left, right)
@@ -180,9 +183,20 @@ def _loop(axes: Any, session: Session) -> None:
     axes.plot(*ways[0], "o", color=INK, ms=7, label="start and end")
     for tick in (np.searchsorted(np.cumsum(np.abs(np.diff(ways, axis=0)).sum(axis=1)), (1.0, 3.0))).tolist():
         axes.annotate(
-            "", ways[tick + 8], ways[tick], arrowprops={"arrowstyle": "-|>", "color": COP, "mutation_scale": 18}
+            "",
+            ways[tick + 8],
+            ways[tick],
+            arrowprops={"arrowstyle": "-|>", "color": COP, "mutation_scale": 18},
         )
     finish(axes, "the legs go out on one way and back on another", f"{first} [1]", f"{second} [1]")
+
+
+def _widest(axes: Any, session: Session) -> None:
+    tick = int(done(session)[:, 1].argmax())
+    snapshot(axes, session, tick, FRONT, f"from the front, {times(session)[tick]:.2f} s")
+    middle = session.recording.column("com")[tick]
+    axes.set_xlim(middle[1] + _HALF_VIEW, middle[1] - _HALF_VIEW)
+    axes.set_ylim(middle[_Z] - _HALF_VIEW, middle[_Z] + _HALF_VIEW)
 
 
 def _zero(axes: Any, session: Session) -> None:
@@ -210,8 +224,9 @@ def _pushed(axes: Any, session: Session) -> None:
     band(axes, session)
     for axis, (name, color) in enumerate((("x", COP), ("y", SPIN), ("z", FORCE))):
         axes.plot(times(session), spin(session)[:, axis], color=color, label=f"$k_{name}$")
-    axes.plot(times(session), pelvis_turn(session)[:, 1], "--", color=INK, label="pelvis about y [rad]")
-    finish(axes, "pushed in the air: what the push gives is kept", "time [s]", "k [N m s]")
+    pitch = np.degrees(pelvis_turn(session)[:, 1])
+    axes.plot(times(session), pitch, "--", color=INK, label="pelvis about y [degrees]")
+    finish(axes, "pushed in the air: what the push gives is kept", "time [s]", "k [N m s], angle [degrees]")
 
 
 FIGURE = Figure("flight", "Turning in the air without angular momentum", scenarios, draw, table, claims)

@@ -62,7 +62,9 @@ def claims(session: Session, finer: Session) -> list[Claim]:
             0.02,
             "of it",
         ),
-        at_most("pushed: after it the angular momentum is kept, within", drift(session) / size, 0.01, "of it"),
+        at_most(
+            "pushed: after it the angular momentum is kept, within", drift(session) / size, 0.01, "of it"
+        ),
         at_most(
             "pushed: half the tick strays less: this part of it",
             drift(finer) / drift(session),

@@ -88,9 +88,10 @@ def from_above(axes: Any, session: Session, moments: Mapping[str, tuple[int, str
     """The robot seen from above at some ticks, by name with a colour each, x up the page and y to the left."""
     for name, (tick, color) in moments.items():
         for line in bones(session, tick):
-            axes.plot(-line[:, 1], line[:, 0], "-", color=color, lw=2.0, solid_capstyle="round")
+            axes.plot(line[:, 1], line[:, 0], "-", color=color, lw=2.0, solid_capstyle="round")
         for corners in soles(session, tick):
             around = corners[[0, 1, 2, 3, 0]]
-            axes.plot(-around[:, 1], around[:, 0], color=color, lw=3.0, label=name)
+            axes.plot(around[:, 1], around[:, 0], color=color, lw=3.0, label=name)
     axes.set_aspect("equal")
-    finish(axes, title, "-y [m]", "x [m]")
+    axes.invert_xaxis()
+    finish(axes, title, "y [m]", "x [m]")
