@@ -18,6 +18,14 @@ _FULL_TORQUE_ANGLE = 0.3
 _DAMPING_TIME = 0.05
 
 HOLD_IN_WORDS = "holding the posture with joint springs"
+NO_FOOT = "no foot is on the ground"
+
+
+def in_words(reference: Reference, reason: str) -> str | None:
+    """Why the posture is held; None in the air, for a reference that is made for it: then nothing has failed."""
+    if reason == NO_FOOT and reference.in_the_air is not None:
+        return None
+    return f"{reason}; {HOLD_IN_WORDS}"
 
 
 def hold_posture(robot: RobotModel, dynamics: Dynamics, reference: Reference) -> np.ndarray:
@@ -57,7 +65,7 @@ def hold(
     return replace(
         without_ground(robot, dynamics, memory),
         torque=hold_posture(robot, dynamics, reference),
-        failure=f"{reason}; {HOLD_IN_WORDS}",
+        failure=in_words(reference, reason),
     )
 
 

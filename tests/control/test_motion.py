@@ -88,6 +88,19 @@ def test_a_loop_of_the_joints_closes_and_has_an_inside(robot, name):
 
 
 @pytest.mark.parametrize("controller", CONTROLLERS)
+def test_in_the_air_every_controller_goes_the_loop_and_nothing_has_failed(robot, controller):
+    flight = Scenario("m", robot=robot.spec.name, controller=controller, motion="cat-right", drop_height=3.0)
+    session = Session(flight, robot)
+    for _ in range(750):
+        session.tick()
+    joints = session.recording.column("q")[:, 7:]
+    reach = np.abs(session.motion_reach)
+    assert_close(np.abs(joints - joints[0]).max(axis=0)[reach > 0.0], reach[reach > 0.0], 0.01)
+    assert_close(joints[-1], joints[0], 5e-3)
+    assert session.solver_failures == 0
+
+
+@pytest.mark.parametrize("controller", CONTROLLERS)
 def test_a_motion_for_the_air_does_nothing_on_the_ground(robot, controller):
     still, asked = (
         Session(Scenario("m", robot=robot.spec.name, controller=controller, motion=motion), robot)
