@@ -118,9 +118,9 @@ STEPS = (
 
 CLAIMS = (
     lab.Bound("nothing touches the ground", "touched", high=0.0),
-    # The legs move fast now: what a tick of 1 ms leaves of them is 0.4 % of their momentum.
+    # The legs move fast now: what a tick of 1 ms leaves of them is less than 1 % of their momentum.
     lab.Bound("without a kick there is no angular momentum", "none", high=0.1),
-    lab.Bound("the limbs have much more", "limbs", low=10.0),
+    lab.Bound("the limbs have much more", "limbs", low=5.0),
     lab.Bound("they come back", "bent", high=0.5),
     lab.Bound("still the body is turned", "cat", low=20.0),
     lab.Bound("by what kinematics gives", "foretold", low=20.0),
