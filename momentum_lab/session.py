@@ -175,7 +175,7 @@ class Session:
     @property
     def motion_reach(self) -> np.ndarray:
         """How far the present motion moves each joint (na,), rad; zeros without one."""
-        return np.zeros(self.robot.na) if self._motion is None else self._motion.reach
+        return np.zeros(self.robot.na) if self._motion is None else self._motion.reach.sum(axis=0)
 
     def angular_momentum_asked(self, time: float) -> np.ndarray:
         """k_d of the present motion at a time of the run, s (3,), N m s; zeros without one."""

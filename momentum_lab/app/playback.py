@@ -9,7 +9,7 @@ import numpy as np
 from momentum_lab.app.wire import Fallen, Truth
 from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.ground_sense import GroundSense
-from momentum_lab.control.motion import AngularGoal
+from momentum_lab.control.motion import AngularGoal, motions_of
 from momentum_lab.control.planner import OWN
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import InputError, SimulationError
@@ -296,7 +296,7 @@ class Playback:
             priority=truth.priority,
             controlled=truth.controlled,
             planner=truth.planner,
-            motion=truth.motion if truth.motion in load_spec(name).motions else "",
+            motion=truth.motion if truth.motion in motions_of(load_spec(name)) else "",
             angular_goal=truth.angular_goal,
             ground_sense=truth.ground_sense,
             gains=gains,
