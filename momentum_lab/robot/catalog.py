@@ -29,6 +29,7 @@ class FootSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         joints: patterns (shell style) of the joints between pelvis and foot.
         parent: link the sole frame is added to when the URDF has none.
         offset: origin of the added frame in the parent link's frame, m.
+        rpy: roll, pitch and yaw of the added frame in the parent link's frame, rad.
     """
 
     frame: str
@@ -37,6 +38,7 @@ class FootSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     joints: tuple[str, ...]
     parent: str | None = None
     offset: Point = (0.0, 0.0, 0.0)
+    rpy: Point = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         for axis, (lower, upper) in (("x", self.x), ("y", self.y)):

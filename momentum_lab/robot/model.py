@@ -168,7 +168,7 @@ def _add_frame(model: pin.Model, name: str, foot: FootSpec, parent: int) -> None
             f"feet.{name}.frame", foot.frame, "a new name, or no parent: the URDF has this frame"
         )
     link = model.frames[parent]
-    placement = link.placement * pin.SE3(np.eye(3), np.array(foot.offset))
+    placement = link.placement * pin.SE3(pin.rpy.rpyToMatrix(np.array(foot.rpy)), np.array(foot.offset))
     model.addFrame(pin.Frame(foot.frame, link.parentJoint, parent, placement, pin.FrameType.OP_FRAME))
 
 

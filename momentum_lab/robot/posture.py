@@ -27,6 +27,8 @@ _STANCE, _COM, _SWING, _HEIGHT, _UPRIGHT, _REST = 1e6, 1e6, 1e3, 1e2, 1.0, 1e-4
 _LARGEST_STEP = 0.2
 _STEPS, _STILL = 200, 1e-9
 _DISTANCE_ERROR, _ANGLE_ERROR, _LIFT_ERROR = 2e-5, 2e-5, 0.02
+# A URDF whose soles are tilted by less than this has z up: its feet hang a little, nothing more.
+_NEARLY_UP = np.cos(np.pi / 4)
 _REACHABLE = "a home (foot_distance, base_height, joints) that the legs can reach"
 
 
@@ -88,10 +90,12 @@ def _home_angles(robot: RobotModel) -> np.ndarray:
 
 
 def _goal(robot: RobotModel, feet: Sequence[str], com_outside: float | None) -> _Goal:
-    """Targets of the stance; with all joints at zero the toes tell which way the robot faces."""
+    """Targets of the stance; with all joints at zero the soles tell which way is up and where the robot faces."""
     data = _kinematics(robot, pin.neutral(robot.model))
-    toes = data.oMf[robot.soles[0].frame].rotation[:, 0]
-    turn = pin.utils.rotate("z", -float(np.arctan2(toes[1], toes[0])))
+    sole = data.oMf[robot.soles[0].frame].rotation
+    upright = _upright(sole[:, 2])
+    toes = upright @ sole[:, 0]
+    turn = pin.utils.rotate("z", -float(np.arctan2(toes[1], toes[0]))) @ upright
     soles = {}
     for sole in robot.soles:
         side = np.sign((turn @ data.oMf[sole.frame].translation)[1])
@@ -105,6 +109,13 @@ def _goal(robot: RobotModel, feet: Sequence[str], com_outside: float | None) -> 
         half_width = 0.5 * (sole.upper[1] - sole.lower[1])
         com[1] += np.sign(soles[sole.name].translation[1]) * (half_width + com_outside)
     return _Goal(turn, soles, com, turn @ data.oMf[robot.pelvis].rotation)
+
+
+def _upright(sole_normal: np.ndarray) -> np.ndarray:
+    """The smallest turn (3, 3) that lets the normal of a sole point up, if the URDF has another axis up than z."""
+    if sole_normal[2] > _NEARLY_UP:
+        return np.eye(3)
+    return pin.Quaternion.FromTwoVectors(sole_normal, np.array([0.0, 0.0, 1.0])).toRotationMatrix()
 
 
 def _solve(robot: RobotModel, feet: Sequence[str], goal: _Goal) -> np.ndarray:

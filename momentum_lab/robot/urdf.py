@@ -13,6 +13,7 @@ from momentum_lab.errors import RobotError
 from momentum_lab.robot.catalog import FootSpec, RobotSpec
 
 _DATA = "example-robot-data"
+_LEVEL = (0.0, 0.0, 0.0)
 
 
 def robot_data_folder() -> Path:
@@ -78,17 +79,19 @@ def bare_urdf(path: Path, feet: dict[str, FootSpec]) -> ET.Element:
             link.remove(shape)
     for foot in feet.values():
         if foot.parent is not None:
-            add_fixed_link(root, foot.frame, foot.parent, foot.offset)
+            add_fixed_link(root, foot.frame, foot.parent, foot.offset, foot.rpy)
     return root
 
 
-def add_fixed_link(root: ET.Element, name: str, parent: str, offset: Iterable[float]) -> None:
-    """Add a link without mass to a URDF, at an offset (3,) in the axes of another link, m."""
+def add_fixed_link(
+    root: ET.Element, name: str, parent: str, offset: Iterable[float], rpy: Iterable[float] = _LEVEL
+) -> None:
+    """Add a link without mass to a URDF, at an offset (3,), m, in the axes of another link, turned by rpy (3,), rad."""
     ET.SubElement(root, "link", name=name)
     joint = ET.SubElement(root, "joint", name=f"{name}_weld", type="fixed")
     ET.SubElement(joint, "parent", link=parent)
     ET.SubElement(joint, "child", link=name)
-    ET.SubElement(joint, "origin", xyz=" ".join(map(str, offset)))
+    ET.SubElement(joint, "origin", xyz=" ".join(map(str, offset)), rpy=" ".join(map(str, rpy)))
 
 
 def load_model(path: Path) -> pin.Model:
