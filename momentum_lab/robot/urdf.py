@@ -86,7 +86,7 @@ def bare_urdf(path: Path, feet: dict[str, FootSpec]) -> ET.Element:
 def add_fixed_link(
     root: ET.Element, name: str, parent: str, offset: Iterable[float], rpy: Iterable[float] = _LEVEL
 ) -> None:
-    """Add a link without mass to a URDF, at an offset (3,), m, in the axes of another link, turned by rpy (3,), rad."""
+    """Add a link without mass to a URDF, at an offset (3,) in another link, m, turned by rpy (3,), rad."""
     ET.SubElement(root, "link", name=name)
     joint = ET.SubElement(root, "joint", name=f"{name}_weld", type="fixed")
     ET.SubElement(joint, "parent", link=parent)

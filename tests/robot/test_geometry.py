@@ -239,6 +239,6 @@ def test_an_unknown_shape_is_named(write_biped: WriteBiped) -> None:
     cone = "<visual><geometry><cone/></geometry></visual></link>"
     urdf.write_text(urdf.read_text().replace("</link>", cone, 1))
     with pytest.raises(
-        RobotError, match=r"shape in biped\.urdf: got cone; allowed: mesh, box, cylinder or sphere"
+        RobotError, match=r"shape in biped\.urdf: got cone; allowed: mesh, box, cylinder, capsule or sphere"
     ):
         visual_meshes(robot)
