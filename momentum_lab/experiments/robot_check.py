@@ -28,6 +28,8 @@ DIRECTIONS = {"forward": 0.0, "left": 90.0, "backward": 180.0, "right": 270.0}
 _START, _DURATION, _SECONDS = 0.5, 0.1, 4.0
 # A motor that gives this part of its torque for longer than this is at its limit, s.
 _FULL, _LONG = 0.999, 0.02
+# So many of them are named.
+_FEW = 3
 
 
 class Trial(msgspec.Struct, frozen=True, kw_only=True):
@@ -43,7 +45,7 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
         peak_com_excursion: m.
         min_cop_margin: smallest distance of the CoP from the edge of the support, m; None without support.
         peak_torque_ratio: largest torque asked for, as a part of its motor's limit.
-        saturated: motors that were at their limit for more than 20 ms.
+        saturated: motors that were at their limit for more than 20 ms, the first first.
     """
 
     direction: str
@@ -139,12 +141,13 @@ def _trial(session: Session, timing: Timing, direction: str, force: float) -> Tr
 
 
 def _saturated(session: Session, summary: Summary) -> tuple[str, ...]:
-    """Motors at their limit for more than 20 ms before a fall."""
+    """Motors at their limit for more than 20 ms before a fall, in the order in which they came there."""
     recording, robot = session.recording, session.robot
     before = recording.column("time") < (math.inf if summary.fall_time is None else summary.fall_time)
     full = np.abs(recording.column("torque")[before]) >= _FULL * robot.effort_limit
     long = full.sum(axis=0) * session.scenario.timestep > _LONG
-    return tuple(robot.joint_names[i] for i in np.flatnonzero(long))
+    first = np.argmax(full, axis=0)
+    return tuple(robot.joint_names[i] for i in sorted(np.flatnonzero(long), key=lambda i: (first[i], i)))
 
 
 def _why(summary: Summary, saturated: tuple[str, ...]) -> str:
@@ -154,7 +157,8 @@ def _why(summary: Summary, saturated: tuple[str, ...]) -> str:
     elif not summary.settled:
         parts.append("still moving at the end")
     if saturated and not summary.settled:
-        parts.append(f"motors at their limit: {', '.join(saturated)}")
+        more = f" and {len(saturated) - _FEW} more" if len(saturated) > _FEW else ""
+        parts.append(f"motors at their limit: {', '.join(saturated[:_FEW])}{more}")
     if summary.qp_failures:
         parts.append(f"no solution on {summary.qp_failures} ticks")
     return "; ".join(parts)

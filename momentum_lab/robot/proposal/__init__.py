@@ -133,10 +133,15 @@ def _push_bodies(body: Body) -> dict[str, str]:
 
 
 def _with_rotors(spec: RobotSpec) -> RobotSpec:
-    """The robot with rotor inertias in proportion to what each joint moves when the robot stands."""
+    """The robot with rotor inertias in proportion to what each joint moves when the robot stands.
+
+    The joints of a leg get the same one: their motors are alike, and an ankle moves a foot or the whole robot.
+    """
     robot = RobotModel(spec)
     mass_matrix = pin.crba(robot.model, robot.model.createData(), standing_posture(robot))
     loads = np.diag(mass_matrix)[6:] - robot.model.armature[6:]
+    for sole in robot.soles:
+        loads[sole.joints] = np.median(loads[sole.joints])
     rotors = {
         name: float(f"{np.clip(_ROTOR * load, _SMALLEST, _LARGEST):.1g}")
         for name, load, own in zip(robot.joint_names, loads, robot.model.armature[6:], strict=True)
@@ -152,15 +157,15 @@ def _sources(sole: Sole, semantics: Semantics) -> dict[str, str]:
         "soles": f"{sole.source}, rounded inwards to 1 mm",
         "home": f"knees bent as far as limits and reach allow, feet as far apart as the legs hang, {arms}",
         "friction": "estimate: rubber sole on a hard floor, a customary value",
-        "armature": "estimate: a tenth of what each joint moves in the standing posture, 0.001 to 0.2 kg m^2",
-        "fall_points": "points of the convex hulls of the shapes, as far from each other as possible, rounded to 1 mm",
+        "armature": "estimate: a tenth of what a joint moves in the home posture, in a leg of the median joint",
+        "fall_points": "corners of the shapes' convex hulls, far from each other, rounded to 1 mm",
     }
 
 
 def _estimates(home: Home) -> list[Remark]:
     found = [
         Remark("estimated", f"friction {_FRICTION:g}: rubber on a hard floor"),
-        Remark("estimated", "armature: a tenth of what each joint moves"),
+        Remark("estimated", "armature: a tenth of what each joint moves, in a leg of its median joint"),
     ]
     if not home.fault and home.bend < 0.5:
         found.append(Remark("doubtful", f"the knees could be bent by no more than {home.bend:g} rad"))

@@ -45,7 +45,7 @@ def masses_of(root: ET.Element) -> dict[str, float]:
 
 
 def remarks_on_urdf(root: ET.Element) -> list[Remark]:
-    """What can be said before the URDF is understood: joints that the lab takes in another way than they are meant."""
+    """What can be said before the URDF is understood: joints that are meant otherwise, and limits they lack."""
     moving = [joint for joint in root.findall("joint") if joint.get("type") in ("revolute", "prismatic")]
     found = []
     mimics = [joint.get("name", "") for joint in moving if joint.find("mimic") is not None]
@@ -104,7 +104,7 @@ def remarks_on_body(body: Body) -> list[Remark]:
     model = body.model
     above = [model.names[j] for j in model.supports[body.pelvis] if j > 1]
     if above:
-        text = f"the root is above the pelvis, which hangs on {_some(above)}; a floating base of the URDF's own is too much"
+        text = f"the pelvis hangs on {_some(above)}: a root that is another link, or a floating base too many"
         found.append(Remark("doubtful", text))
     for side, leg in zip(FEET, body.legs, strict=True):
         if not leg.pitch:

@@ -86,11 +86,8 @@ def _borders(hull: np.ndarray, xs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     for start, end in zip(hull, np.roll(hull, -1, axis=0), strict=True):
         (x0, y0), (x1, y1) = sorted((tuple(start), tuple(end)))
         inside = (xs >= x0 - 1e-12) & (xs <= x1 + 1e-12)
-        if x1 - x0 < 1e-9:
-            edges = [y0, y1]
-        else:
-            edges = [y0 + (xs[inside] - x0) / (x1 - x0) * (y1 - y0)]
-        for y in edges:
+        upright = x1 - x0 < 1e-9
+        for y in (y0, y1) if upright else (y0 + (xs[inside] - x0) / (x1 - x0) * (y1 - y0),):
             low[inside], high[inside] = np.minimum(low[inside], y), np.maximum(high[inside], y)
     return low, high
 
