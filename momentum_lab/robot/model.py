@@ -57,6 +57,7 @@ class RobotModel:
         self.joint_names: tuple[str, ...] = tuple(self.model.names[2:])
         self.soles = tuple(self._sole(name, foot) for name, foot in spec.feet.items())
         self.model.armature = _armature(spec, self)
+        _replace_limits(spec, self)
         self.data = self.model.createData()
         self.pelvis = self.frame(spec.pelvis)
         self.trunk = self.frame(spec.trunk)
@@ -178,6 +179,20 @@ def _armature(spec: RobotSpec, robot: RobotModel) -> np.ndarray:
     for pattern, inertia in spec.armature.items():
         armature[_BASE_DOF + robot.matching_joints([pattern])] = inertia
     return armature
+
+
+def _replace_limits(spec: RobotSpec, robot: RobotModel) -> None:
+    """Put the limits of the robot's file in place of the URDF's."""
+    model = robot.model
+    for pattern, limit in spec.limits.items():
+        joints = robot.matching_joints([pattern])
+        for array, first, value in (
+            (model.lowerPositionLimit, 7, limit.lower),
+            (model.upperPositionLimit, 7, limit.upper),
+            (model.effortLimit, _BASE_DOF, limit.effort),
+        ):
+            if value is not None:
+                array[first + joints] = value
 
 
 def _check(robot: RobotModel) -> None:

@@ -119,7 +119,7 @@ def _upright(sole_normal: np.ndarray) -> np.ndarray:
 
 
 def _solve(robot: RobotModel, feet: Sequence[str], goal: _Goal) -> np.ndarray:
-    xml = ET.tostring(bare_urdf(robot.urdf, robot.spec.feet), encoding="unicode")
+    xml = ET.tostring(bare_urdf(robot.urdf, robot.spec), encoding="unicode")
     body = placo.RobotWrapper(str(robot.urdf), placo.Flags.ignore_collisions, xml)
     solver = placo.KinematicsSolver(body)
     _start(robot, body, solver, goal.turn)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 
+import msgspec
+
 from momentum_lab.robot.catalog import FootSpec, RobotSpec
 
 
@@ -30,6 +32,8 @@ def robot_toml(spec: RobotSpec, comments: Sequence[str] = ()) -> str:
     home = {"foot_distance": spec.home.foot_distance, "base_height": spec.home.base_height}
     lines += _table("home", home) + _table("home.joints", spec.home.joints)
     lines += _table("push_bodies", spec.push_bodies) + _table("armature", spec.armature)
+    for joint, limit in spec.limits.items():
+        lines += _table(f'limits."{joint}"', msgspec.to_builtins(limit))
     for motion, reach in spec.motions.items():
         lines += _table(f"motions.{motion}", reach)
     lines += _table("fall_points", spec.fall_points) + _table("sources", spec.sources)
