@@ -24,8 +24,8 @@ _FEW = 400
 _LOOSE = 0.25
 _CREASE = np.radians(40.0)
 _GREY: Color = (0.7, 0.7, 0.7)
-# Radius of the bones of a robot that has no meshes, and thickness of its soles, m.
-_BONE, _PLATE = 0.025, 0.02
+# A robot without meshes: radius of its bones, thickness of its soles, by how much those are drawn larger, m.
+_BONE, _PLATE, _RIM = 0.025, 0.02, 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,11 +84,11 @@ def _skeleton(robot: RobotModel) -> dict[tuple[int, Color], list[trimesh.Trimesh
     for joint in range(2, model.njoints):
         end = model.jointPlacements[joint].translation
         parts[int(model.parents[joint]), _GREY].append(_bone(end))
-        parts[joint, _GREY].append(trimesh.creation.icosphere(2, 1.3 * _BONE))
+        parts[joint, _GREY].append(trimesh.creation.icosphere(2, 1.1 * _BONE))
     for sole in robot.soles:
         frame = model.frames[sole.frame]
         length, width = sole.upper - sole.lower
-        plate = trimesh.creation.box((length, width, _PLATE))
+        plate = trimesh.creation.box((length + _RIM, width + _RIM, _PLATE))
         plate.apply_translation([*(sole.lower + sole.upper) / 2, _PLATE / 2])
         plate.apply_transform(frame.placement.homogeneous)
         heel_to_joint = _bone(frame.placement.act(np.append((sole.lower + sole.upper) / 2, _PLATE)))
