@@ -62,7 +62,8 @@ def robot_check(args: Namespace) -> int:
 def _candidate(args: Namespace) -> _Candidate:
     """The robot that was named."""
     if not args.robot.lower().endswith(".urdf"):
-        for option, value in (("--soles", args.soles), ("--out", args.out)):
+        soles = None if args.soles is None else ",".join(args.soles)
+        for option, value in (("--soles", soles), ("--out", args.out)):
             if value is not None:
                 raise InputError(option, value, "together with a .urdf; a robot's .toml is only checked")
         if not args.robot:

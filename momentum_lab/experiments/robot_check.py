@@ -25,7 +25,7 @@ RATIO = 0.7
 DIRECTIONS = {"forward": 0.0, "left": 90.0, "backward": 180.0, "right": 270.0}
 """Where the robot is pushed to, degrees about the vertical."""
 
-_START, _DURATION, _SECONDS = 0.5, 0.1, 4.0
+_START, _DURATION, _SECONDS = 0.2, 0.1, 3.0
 # A motor that gives this part of its torque for longer than this is at its limit, s.
 _FULL, _LONG = 0.999, 0.02
 # So many of them are named.
@@ -39,7 +39,7 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
         direction: where the push points; `none` for standing alone.
         force: N.
         impulse_ratio: impulse over what an inverted pendulum survives with its CoP alone.
-        stands: whether the robot has not fallen after 4 s.
+        stands: whether the robot has not fallen after 3 s.
         settled: and is still.
         why: in words; empty for a robot that stands still.
         peak_com_excursion: m.

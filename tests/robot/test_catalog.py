@@ -41,7 +41,8 @@ def test_an_unknown_name_is_answered_with_the_known_ones() -> None:
     with pytest.raises(RobotError) as caught:
         load_spec("atlas")
     assert str(caught.value) == (
-        "robot: got atlas; allowed: one of g1, human, icub, romeo, simple_humanoid, talos, or the path of a robot .toml"
+        "robot: got atlas; allowed: one of g1, human, icub, romeo, simple_humanoid, talos, "
+        "or the path of a robot .toml"
     )
 
 

@@ -18,11 +18,13 @@ from momentum_lab.robot.posture import standing_posture
 from momentum_lab.robot.proposal.body import FEET, Body, find_body
 from momentum_lab.robot.proposal.fall_points import find_fall_points
 from momentum_lab.robot.proposal.home import Home, find_home, foot_distance
+from momentum_lab.robot.proposal.limits import missing_limits
 from momentum_lab.robot.proposal.remarks import (
     Remark,
     masses_of,
     remarks_on_body,
     remarks_on_inertia,
+    remarks_on_posture,
     remarks_on_soles,
     remarks_on_solids,
     remarks_on_urdf,
@@ -30,11 +32,17 @@ from momentum_lab.robot.proposal.remarks import (
 from momentum_lab.robot.proposal.sole_fit import Sole, fit_sole
 from momentum_lab.robot.proposal.solids import read_solids
 from momentum_lab.robot.proposal.srdf import Semantics, read_semantics
+from momentum_lab.robot.state import State
 from momentum_lab.robot.urdf import load_model, read_urdf, robot_data_folder
 
 _FRICTION = 0.7
 # A rotor behind its gear is guessed as this part of what it moves, within what motors of humanoids have, kg m^2.
 _ROTOR, _SMALLEST, _LARGEST = 0.1, 0.001, 0.2
+_LIMITS_SOURCE = {
+    "limits": "estimate where the URDF gives none: motors of a leg hold 0.3 m g l, others a tenth of it"
+}
+# Holding still should take no more than this part of a motor's torque.
+_EASY = 0.8
 # No shape of a link is larger than this many leg lengths.
 _LARGEST_SHAPE = 2.0
 
@@ -86,7 +94,8 @@ def propose(urdf: Path, soles: Sequence[str]) -> Proposal:
         *remarks_on_soles(body, fitted),
         *remarks_on_solids(solids, bare),
         *remarks_on_inertia(root, body),
-        *_estimates(home),
+        *remarks_on_posture(body, semantics),
+        *_estimates(spec, home),
     ]
     return Proposal(spec, tuple(remarks), home.fault)
 
@@ -108,7 +117,8 @@ def _first_spec(
         home=HomeSpec(foot_distance(body, (left.y, right.y)), body.leg_length),
         push_bodies=_push_bodies(body),
         friction=_FRICTION,
-        sources=_sources(soles[0], semantics),
+        limits=(limits := missing_limits(body)),
+        sources=_sources(soles[0], semantics) | (_LIMITS_SOURCE if limits else {}),
     )
 
 
@@ -162,14 +172,36 @@ def _sources(sole: Sole, semantics: Semantics) -> dict[str, str]:
     }
 
 
-def _estimates(home: Home) -> list[Remark]:
+def _estimates(spec: RobotSpec, home: Home) -> list[Remark]:
+    """What has been guessed, and what the posture that was found is worth."""
     found = [
         Remark("estimated", f"friction {_FRICTION:g}: rubber on a hard floor"),
         Remark("estimated", "armature: a tenth of what each joint moves, in a leg of its median joint"),
     ]
     if not home.fault and home.bend < 0.5:
         found.append(Remark("doubtful", f"the knees could be bent by no more than {home.bend:g} rad"))
+    if not home.fault:
+        robot = RobotModel(spec)
+        for joint, part in _strained(robot, standing_posture(robot)).items():
+            found.append(
+                Remark("doubtful", f"holding the home posture takes {part:.0%} of the effort of {joint}")
+            )
     return found
+
+
+def _strained(robot: RobotModel, q: np.ndarray) -> dict[str, float]:
+    """Motors that need more than 80 % of their torque while the soles share the weight: joint -> part.
+
+    tau = g(q) - sum J_f^T w, each w a half of the weight in the middle of its sole.
+    """
+    dynamics = robot.at(State(q, np.zeros(robot.nv)))
+    torque = dynamics.nonlinear_effects.copy()
+    force = np.array([0.0, 0.0, torque[2] / len(robot.soles)])
+    for i, sole in enumerate(robot.soles):
+        lever = dynamics.sole_rotation[i] @ sole.corners.mean(axis=0)
+        torque -= dynamics.sole_jacobian[i].T @ np.concatenate([force, np.cross(lever, force)])
+    parts = np.abs(torque[6:]) / robot.effort_limit
+    return {robot.joint_names[i]: float(parts[i]) for i in np.flatnonzero(parts > _EASY)}
 
 
 __all__ = ["Proposal", "Remark", "propose"]

@@ -13,6 +13,7 @@ import pinocchio as pin
 from momentum_lab.robot.proposal.body import FEET, Body
 from momentum_lab.robot.proposal.sole_fit import Sole
 from momentum_lab.robot.proposal.solids import Solids
+from momentum_lab.robot.proposal.srdf import Semantics
 
 Grade = Literal["missing", "doubtful", "estimated"]
 
@@ -60,7 +61,7 @@ def remarks_on_urdf(root: ET.Element) -> list[Remark]:
         found.append(Remark("doubtful", f"velocity limits above 50 rad/s are placeholders: {_some(fast)}"))
     weak = [joint.get("name", "") for joint, limit in limited.items() if not _number(limit, "effort") > 0.0]
     if weak:
-        found.append(Remark("missing", f"no effort limit above 0 in the URDF's <limit>: {_some(weak)}"))
+        found.append(Remark("missing", f"no effort limit above 0, a guess instead: {_some(weak)}"))
     return found
 
 
@@ -121,6 +122,21 @@ def remarks_on_body(body: Body) -> list[Remark]:
     return found + _unlike_limits(body)
 
 
+def remarks_on_posture(body: Body, semantics: Semantics) -> list[Remark]:
+    """Angles of the SRDF's posture that the URDF's limits do not allow."""
+    model = body.model
+    outside = []
+    for name, angle in semantics.angles.items():
+        if model.existJointName(name):
+            low, high = _range(model, model.getJointId(name), 1.0)
+            if not low - _DIFFERENT < angle < high + _DIFFERENT:
+                outside.append(f"{name} = {angle:.2f}, not {low:.2f} to {high:.2f}")
+    if not outside:
+        return []
+    text = f"{semantics.state} of {semantics.file} lies outside the URDF's limits: {_some(outside)}"
+    return [Remark("doubtful", text)]
+
+
 def remarks_on_soles(body: Body, soles: tuple[Sole, Sole]) -> list[Remark]:
     """Sole frames that lie or look another way than the lab needs, guesses, and feet that differ."""
     found = []
@@ -151,10 +167,9 @@ def remarks_on_soles(body: Body, soles: tuple[Sole, Sole]) -> list[Remark]:
 def remarks_on_solids(solids: Solids, bare: list[str]) -> list[Remark]:
     """Meshes that are missing, shapes that are no robot's, and links without a shape."""
     found = []
-    if solids.unreadable:
-        found.append(
-            Remark("missing", f"{len(solids.unreadable)} meshes cannot be read: {_some(solids.unreadable)}")
-        )
+    if count := len(solids.unreadable):
+        meshes = "1 mesh" if count == 1 else f"{count} meshes"
+        found.append(Remark("missing", f"{meshes} cannot be read: {_some(solids.unreadable)}"))
     for link, size in solids.oversized.items():
         found.append(Remark("doubtful", f"a shape of {link} is {size:.1f} m across and is left out"))
     if bare:
