@@ -19,9 +19,10 @@ def test_every_number_of_a_shipped_robot_has_a_source(name: str) -> None:
     assert spec.name == name
     needed = {"urdf", "soles", "home", "friction", "armature", "fall_points"}
     needed |= {name for name in ("motions", "limits") if getattr(spec, name)}
-    # A trunk that is not the one on the screen needs a reason.
-    needed |= {"trunk"} if spec.trunk != spec.push_bodies["trunk"] else set()
+    # A trunk without a waist below it needs a reason.
+    needed |= {"trunk"} if spec.trunk == spec.pelvis else set()
     assert set(spec.sources) == needed
+    assert spec.trunk == spec.push_bodies["trunk"]
     assert {"pelvis", "trunk", "left_hand", "right_hand"} <= set(spec.push_bodies)
     assert ("head" in spec.push_bodies) == (name != "simple_humanoid"), "its neck ends at the shoulders"
 
