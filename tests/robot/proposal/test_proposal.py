@@ -55,7 +55,9 @@ def test_the_parts_are_those_of_the_shipped_file(proposed: tuple[str, Proposal])
     shipped, spec = load_spec(name), proposal.spec
     assert spec.pelvis == shipped.pelvis
     bodies = dict(shipped.push_bodies)
-    bodies["trunk"] = bodies.pop("torso", bodies["trunk"])  # the simple humanoid is pushed at its pelvis instead
+    bodies["trunk"] = bodies.pop(
+        "torso", bodies["trunk"]
+    )  # the simple humanoid is pushed at its pelvis instead
     assert spec.push_bodies == bodies
     ours, theirs = RobotModel(spec), RobotModel(shipped)
     for mine, other in zip(ours.soles, theirs.soles, strict=True):
