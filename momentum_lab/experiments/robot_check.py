@@ -42,9 +42,9 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
         stands: whether the robot has not fallen after 3 s.
         settled: and is still.
         why: in words; empty for a robot that stands still.
-        peak_com_excursion: m.
+        peak_com_excursion: largest horizontal distance of the CoM from its start before a fall, m.
         min_cop_margin: smallest distance of the CoP from the edge of the support, m; None without support.
-        peak_torque_ratio: largest torque asked for, as a part of its motor's limit.
+        peak_torque_ratio: largest torque asked for before a fall, as a part of its motor's limit.
         saturated: motors that were at their limit for more than 20 ms, the first first.
     """
 
@@ -124,8 +124,10 @@ def _scenario(robot: RobotModel, direction: str, force: float) -> Scenario:
 
 
 def _trial(session: Session, timing: Timing, direction: str, force: float) -> Trial:
-    summary = summarize(session, timing)
-    saturated = _saturated(session, summary)
+    summary, recording = summarize(session, timing), session.recording
+    standing = recording.column("time") < (math.inf if summary.fall_time is None else summary.fall_time)
+    saturated = _saturated(session, standing)
+    away = np.linalg.norm(recording.column("com")[:, :2] - recording.column("com")[0, :2], axis=1)
     return Trial(
         direction=direction,
         force=force,
@@ -133,18 +135,19 @@ def _trial(session: Session, timing: Timing, direction: str, force: float) -> Tr
         stands=not summary.fell,
         settled=summary.settled,
         why=_why(summary, saturated),
-        peak_com_excursion=summary.peak_com_excursion,
+        peak_com_excursion=float(away[standing].max(initial=0.0)),
         min_cop_margin=summary.min_cop_margin,
-        peak_torque_ratio=summary.peak_torque_ratio,
+        peak_torque_ratio=float(recording.column("torque_ratio")[standing].max(initial=0.0)),
         saturated=saturated,
     )
 
 
-def _saturated(session: Session, summary: Summary) -> tuple[str, ...]:
-    """Motors at their limit for more than 20 ms before a fall, in the order in which they came there."""
-    recording, robot = session.recording, session.robot
-    before = recording.column("time") < (math.inf if summary.fall_time is None else summary.fall_time)
-    full = np.abs(recording.column("torque")[before]) >= _FULL * robot.effort_limit
+def _saturated(session: Session, standing: np.ndarray) -> tuple[str, ...]:
+    """Motors at their limit for more than 20 ms of the rows (n,) in which the robot stands, the first first."""
+    robot = session.robot
+    full = np.abs(session.recording.column("torque")[standing]) >= _FULL * robot.effort_limit
+    if not len(full):
+        return ()
     long = full.sum(axis=0) * session.scenario.timestep > _LONG
     first = np.argmax(full, axis=0)
     return tuple(robot.joint_names[i] for i in sorted(np.flatnonzero(long), key=lambda i: (first[i], i)))

@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 from scipy.spatial import ConvexHull, QhullError
 
+from momentum_lab.errors import RobotError
 from momentum_lab.robot.catalog import FootSpec, Point, Range
 from momentum_lab.robot.proposal.body import Body
 from momentum_lab.robot.proposal.solids import Kind, Solids
@@ -20,6 +21,8 @@ _ENOUGH = 0.5
 # A frame that lies within this of the sole and its axes is taken for the sole frame, m and rad.
 _NEAR, _ALIGNED = 0.006, 0.02
 _GRID = 60
+# A foot that is shorter or narrower is a point or a line, and a CoP cannot move in it, m.
+_LEAST = 0.01
 # Foot length, width and ankle height as parts of the leg from hip to ankle, and the part of the length behind
 # the ankle (Winter's body proportions).
 _LENGTH, _WIDTH, _HEIGHT, _BEHIND = 0.31, 0.112, 0.08, 0.25
@@ -48,11 +51,19 @@ def fit_sole(body: Body, side: int, solids: Solids, semantics: Semantics) -> Sol
     """The sole of the left (0) or right (1) foot, with all joints at zero.
 
     The given frame is kept if it lies in the sole with z up and x forward. Otherwise a frame is added to it.
+
+    Raises:
+        RobotError: the foot touches the ground in a point or a line.
     """
     frame = body.model.frames[body.soles[side]]
     given = body.data.oMf[body.soles[side]]
     level = body.axes.T @ given.rotation
     x, y, height, source, estimated = _rectangle(body, side, solids, semantics)
+    if min(x[1] - x[0], y[1] - y[0]) < _LEAST:
+        given_size = f"{frame.name}, {1e3 * (x[1] - x[0]):.0f} by {1e3 * (y[1] - y[0]):.0f} mm"
+        raise RobotError(
+            "soles", given_size, f"feet with soles of at least {1e3 * _LEAST:g} mm: no points, no lines"
+        )
     drop = float(given.translation @ body.axes[:, 2]) - height
     tilt = float(np.linalg.norm(pin.log3(level)))
     joints = tuple(body.model.names[joint] for joint in body.legs[side].joints)
@@ -68,9 +79,14 @@ def fit_sole(body: Body, side: int, solids: Solids, semantics: Semantics) -> Sol
 def largest_rectangle(points: np.ndarray) -> tuple[Range, Range]:
     """The largest rectangle along the axes inside the convex hull of points of the plane (n, 2), m.
 
-    The hull's lower and upper border are convex and concave in x, so a rectangle fits if its ends do.
+    The hull's lower and upper border are convex and concave in x, so a rectangle fits if its ends do. In a point
+    or a line it is one point.
     """
-    hull = points[ConvexHull(points).vertices]
+    try:
+        hull = points[ConvexHull(points).vertices]
+    except (QhullError, ValueError):
+        x, y = points[0]
+        return (float(x), float(x)), (float(y), float(y))
     xs = np.linspace(hull[:, 0].min(), hull[:, 0].max(), _GRID)
     low, high = _borders(hull, xs)
     width = np.minimum.outer(high, high) - np.maximum.outer(low, low)

@@ -178,6 +178,13 @@ def test_a_mesh_of_a_package_is_found_above_the_urdf_whatever_the_folder_is_call
     assert_close(np.ptp(proposal.spec.fall_points["base"], axis=0), [0.2, 0.2, 0.2], 2e-3)
 
 
+@pytest.mark.parametrize("size", ["0.2 0.004 0.05", "0 0 0.05"])
+def test_feet_that_are_lines_or_points_are_refused(write_biped: WriteBiped, size: str) -> None:
+    path = write_biped(urdf=with_feet(FOOT.replace("0.2 0.08 0.05", size)))
+    with pytest.raises(RobotError, match=r"by \d+ mm; allowed: feet with soles of at least 10 mm"):
+        biped(path)
+
+
 @pytest.mark.parametrize(
     ("soles", "message"),
     [
