@@ -128,7 +128,7 @@ BAD_VALUES = [
         "list: got cats; allowed: robots, controllers, planners, scenarios, lessons, figures, gains",
     ),
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
-    ("fly", "command: got fly; allowed: app, run, lesson, figure, list, equations, bench"),
+    ("fly", "command: got fly; allowed: app, run, lesson, figure, list, equations, robot-check, bench"),
 ]
 
 
@@ -146,10 +146,10 @@ def test_bad_value_is_one_line_that_names_it(words: str, message: str, capsys: O
             "app --scenario nope",
             "--scenario: got nope; allowed: one of arm-swing, board, boat, bus, ",
         ),
-        ("app --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
-        ("equations --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
-        ("run stand --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
-        ("run stand --robot /", "--robot: got /; allowed: one of g1, icub, "),
+        ("app --robot nope", "--robot: got nope; allowed: one of g1, human, icub, "),
+        ("equations --robot nope", "--robot: got nope; allowed: one of g1, human, icub, "),
+        ("run stand --robot nope", "--robot: got nope; allowed: one of g1, human, icub, "),
+        ("run stand --robot /", "--robot: got /; allowed: one of g1, human, icub, "),
         ("run stand --set magic=1", "--set: got magic; allowed: one of linear_damping, "),
         ("run stand --pusch 3", "argument: got --pusch; allowed: run SCENARIO; options: --help, --robot, "),
         ("run stand --see 3", "argument: got --see; allowed: run SCENARIO; options: --help, --robot, "),

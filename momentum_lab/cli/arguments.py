@@ -15,7 +15,7 @@ from momentum_lab.physics.plate import MAX_FRICTION
 from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
 from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 
-COMMANDS = ("app", "run", "lesson", "figure", "list", "equations", "bench")
+COMMANDS = ("app", "run", "lesson", "figure", "list", "equations", "robot-check", "bench")
 KINDS = ("robots", "controllers", "planners", "scenarios", "lessons", "figures", "gains")
 _MAX_PORT = 65535
 _MAX_BENCH_SECONDS, _MAX_BENCH_MINUTES = 600.0, 60.0
@@ -153,6 +153,11 @@ def _parser() -> _Parser:
             _list_arguments,
         ),
         ("equations", "how exactly the chapter's equations hold on a robot", _equations_arguments),
+        (
+            "robot-check",
+            "a robot's file from its URDF, and whether the robot stands and takes a push",
+            _robot_check_arguments,
+        ),
         ("bench", "how fast the lab is on this machine", _bench_arguments),
     ):
         command: Any = commands.add_parser(name, help=help, description=f"{help[0].upper()}{help[1:]}.")
@@ -167,6 +172,7 @@ def _usage(command: str) -> str:
         "lesson": "lesson NAME",
         "figure": "figure NAME --out DIR",
         "list": f"list {'|'.join(KINDS)}",
+        "robot-check": "robot-check ROBOT",
     }
     return words.get(command, command)
 
@@ -304,6 +310,27 @@ def _list_arguments(parser: _Parser) -> None:
 def _equations_arguments(parser: _Parser) -> None:
     parser.add_argument("--robot", default="talos", metavar="R", help="a name, or a robot's .toml file")
     parser.add_argument("--json", action="store_true", help="print a JSON array")
+
+
+def _robot_check_arguments(parser: _Parser) -> None:
+    parser.add_argument(
+        "robot", nargs="?", default="", metavar="ROBOT", help="a .urdf, a robot's .toml, or the name of one"
+    )
+    parser.add_argument(
+        "--soles",
+        type=_two_frames,
+        metavar="LEFT,RIGHT",
+        help="sole frames of a .urdf, or the links of its feet",
+    )
+    parser.add_argument("--out", metavar="FILE", help="save the proposed robot as .toml")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _two_frames(text: str) -> tuple[str, str]:
+    names = [name.strip() for name in text.split(",")]
+    if len(names) != 2 or not all(names) or names[0] == names[1]:
+        raise InputError("--soles", text, "LEFT,RIGHT: two frames of the URDF, separated by a comma")
+    return names[0], names[1]
 
 
 def _bench_arguments(parser: _Parser) -> None:

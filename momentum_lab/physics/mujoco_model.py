@@ -75,7 +75,7 @@ def _ordered_urdf(robot: RobotModel) -> str:
 
     Friction and damping of the joints go, because the lab's own physics does not know them either.
     """
-    root = bare_urdf(robot.urdf, robot.spec.feet)
+    root = bare_urdf(robot.urdf, robot.spec)
     place = {name: i for i, name in enumerate(robot.joint_names)}
     joints = sorted(root.findall("joint"), key=lambda joint: place.get(joint.get("name", ""), len(place)))
     for joint in joints:
