@@ -35,9 +35,10 @@ from momentum_lab.events import (
 )
 from momentum_lab.momentum.directions import Directions, directions
 from momentum_lab.observe import Tick, observe
+from momentum_lab.physics.engines import world
 from momentum_lab.physics.ground import Ground
 from momentum_lab.physics.push import Push
-from momentum_lab.physics.simulator import Simulator, Step
+from momentum_lab.physics.simulator import Step
 from momentum_lab.recording import Layout, Recording, Sample
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.posture import standing_posture
@@ -198,7 +199,7 @@ class Session:
         self.ticks = snapshot.ticks
         self.log = [entry for entry in self.log if entry.tick < snapshot.ticks]
         self._inbox.clear()
-        self._simulator = Simulator(self.robot, self._ground, self.scenario.timestep)
+        self._simulator = world(self.scenario.engine, self.robot, self._ground, self.scenario.timestep)
 
     def _drain_inbox(self) -> None:
         while self._inbox:
@@ -337,7 +338,7 @@ class Session:
         self.solver_failures = 0
         self.last_failure = None
         self._tick_of_run, self._motion_start = 0, 0.0
-        self._simulator = Simulator(self.robot, self._ground, self.scenario.timestep)
+        self._simulator = world(self.scenario.engine, self.robot, self._ground, self.scenario.timestep)
         self._memory = self._controller.initial_memory(self.dynamics)
         self._torque = self._handover = None
         self._taken_over = False

@@ -98,7 +98,7 @@ BAD_VALUES = [
         "run stand --controlled up",
         "--controlled: got up; allowed: all, linear, angular, none, lx, ly, lz, kx, ky, kz, several joined by +",
     ),
-    ("run stand --engine mujoco", "--engine: got mujoco; allowed: one of pinocchio"),
+    ("run stand --engine bullet", "--engine: got bullet; allowed: one of pinocchio, mujoco"),
     ("run stand --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
     (
         "run stand --set linear_damping",

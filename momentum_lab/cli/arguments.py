@@ -212,7 +212,7 @@ def _run_arguments(parser: _Parser) -> None:
         metavar="T",
         help="how long to simulate, s",
     )
-    parser.add_argument("--engine", metavar="E", help="which physics: pinocchio")
+    parser.add_argument("--engine", metavar="E", help="which physics: pinocchio, mujoco")
     parser.add_argument(
         "--seed", type=whole_number("--seed", 0, MAX_SEED), metavar="N", help="seed of random numbers"
     )
