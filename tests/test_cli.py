@@ -128,7 +128,7 @@ BAD_VALUES = [
         "list: got cats; allowed: robots, controllers, planners, scenarios, lessons, figures, gains",
     ),
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
-    ("fly", "command: got fly; allowed: app, run, lesson, figure, list, equations, bench"),
+    ("fly", "command: got fly; allowed: app, run, limit, lesson, figure, list, equations, bench"),
 ]
 
 

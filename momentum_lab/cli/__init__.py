@@ -1,4 +1,4 @@
-"""The command line: momentum-lab app | run | lesson | figure | list | equations | bench.
+"""The command line: momentum-lab app | run | limit | lesson | figure | list | equations | bench.
 
 Exit codes: 0 the command did what was asked (a robot that falls is a result, not an error), 1 something broke
 down on the way or a figure's or lesson's claim or an equation does not hold, 2 bad input, 130 stopped by Ctrl+C. Bad
@@ -69,6 +69,10 @@ def _imported(name: str) -> Callable[[Namespace], int]:
         from momentum_lab.cli.run import run
 
         return run
+    if name == "limit":
+        from momentum_lab.cli.limit import limit
+
+        return limit
     if name == "lesson":
         from momentum_lab.cli.lesson import lesson
 

@@ -19,7 +19,7 @@ _ALL = 0.999
 
 
 def what_gave_out(session: Session) -> tuple[str, ...]:
-    """What came to its end until the robot had fallen: the first of each kind, in the order in which they did.
+    """What came to its end from the first push to the fall: the first of each kind, in the order in which they did.
 
     Args:
         session: at least one tick old, its recording reaching back to the start.
@@ -51,7 +51,7 @@ def _first(
     what: str,
     part: Sequence[int] | None = None,
 ) -> tuple[float, str] | None:
-    """When and where something happens first before the fall; None if it never does.
+    """When and where something happens first between push and fall; None if it never does.
 
     Args:
         session: what has been run.
@@ -61,10 +61,11 @@ def _first(
         part: the places that are looked at; all of them unless given.
     """
     time = session.recording.column("time")
-    standing = time <= (np.inf if session.fall is None else session.fall.time)
+    pushed = time >= min((push.start for push in session.pushes), default=0.0)
+    standing = pushed & (time <= (np.inf if session.fall is None else session.fall.time))
     places = np.arange(len(names)) if part is None else np.array(part)
     rows, columns = np.nonzero(happens[standing][:, places])
-    return (float(time[rows[0]]), f"{names[places[columns[0]]]} {what}") if rows.size else None
+    return (float(time[standing][rows[0]]), f"{names[places[columns[0]]]} {what}") if rows.size else None
 
 
 def _escaping(session: Session) -> np.ndarray:

@@ -93,7 +93,7 @@ def push_limit(
     trials: list[Trial] = []
 
     def attempt(force: float) -> Trial:
-        trials.append(_trial(scenario, robot, push, force, _search_fraction(len(trials), precision, proceed)))
+        trials.append(trial(scenario, robot, push, force, _search_fraction(len(trials), precision, proceed)))
         return trials[-1]
 
     survived, beyond = _bracket(attempt, robot.mass * _FIRST_SPEED / push.duration)
@@ -111,14 +111,14 @@ def _bracket(attempt: Callable[[float], Trial], first: float) -> tuple[Trial, Tr
         raise InputError("scenario", name, "one in which the robot comes to rest when nobody pushes it")
     force = min(first, MAX_FORCE)
     while beyond is None and survived.force < MAX_FORCE:
-        trial = attempt(force)
-        survived, beyond = (trial, None) if trial.survived else (survived, trial)
+        tried = attempt(force)
+        survived, beyond = (tried, None) if tried.survived else (survived, tried)
         force = min(_GROWTH * force, MAX_FORCE)
     return survived, beyond
 
 
-def _trial(scenario: Scenario, robot: RobotModel, push: Push, force: float, proceed: Proceed) -> Trial:
-    """One run; it ends with a fall."""
+def trial(scenario: Scenario, robot: RobotModel, push: Push, force: float, proceed: Proceed) -> Trial:
+    """One run with the push at a force, N; it ends with a fall."""
     sized = msgspec.structs.replace(push, force=force, velocity_change=None)
     session = Session(changed(scenario, pushes=(sized,)), robot)
     timing = run_headless(session, lambda fraction: session.fall is None and proceed(fraction))
