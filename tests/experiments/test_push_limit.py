@@ -18,8 +18,11 @@ from tests.runs import play
 # Both engines' largest pushes are this close to each other.
 AGREEMENT = 0.10
 COARSE = 0.05
-START, SECONDS = 0.1, 3.0
-DIRECTIONS = (0.0, 90.0, 180.0, 225.0)
+# Within 3.5 s after the push both robots have come to rest from nearly all they survive.
+START, SECONDS = 0.1, 3.6
+# Impulse over what the CoP alone survives, found with a search that stops up to 5 % short: above 1.2 but for a push
+# from the side, where the lever of the CoP is longest and a leg has little room to let the body turn.
+LEAST_RATIO = {0.0: 1.15, 90.0: 0.95, 180.0: 1.15, 225.0: 1.15}
 
 
 def always(_fraction: float) -> bool:
@@ -90,7 +93,7 @@ def test_a_push_after_the_end_is_refused(g1):
         push_limit(Scenario("short", robot="g1", seconds=0.6), g1, Push(force=0.0), always)
 
 
-@pytest.mark.parametrize("direction", DIRECTIONS)
+@pytest.mark.parametrize("direction", LEAST_RATIO)
 def test_both_engines_agree_on_the_largest_push(robot, direction):
     """Rigid and soft contact, two derivations of the dynamics: the limit is the controller's, not the engine's.
 
@@ -98,6 +101,7 @@ def test_both_engines_agree_on_the_largest_push(robot, direction):
     """
     push = Push(force=0.0, direction_deg=direction, start=START)
     found = push_limit(standing(robot), robot, push, always, COARSE)
+    assert found.impulse_ratio > LEAST_RATIO[direction]
     lower, upper = (1.0 - AGREEMENT) * found.beyond, (1.0 + AGREEMENT) * found.force
     assert module.trial(standing(robot, "mujoco"), robot, push, lower, always).survived
     assert not module.trial(standing(robot, "mujoco"), robot, push, upper, always).survived
