@@ -28,6 +28,7 @@ FLOORS: tuple[frozenset[str], ...] = (
             "observe",
             "recording",
             "session",
+            "terrain",
             "timeline",
             "status",
             "headless",

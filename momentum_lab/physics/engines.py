@@ -7,6 +7,7 @@ from typing import Literal, Protocol
 import numpy as np
 
 from momentum_lab.physics.ground import Ground
+from momentum_lab.physics.mujoco_engine import MujocoSimulator, check_level
 from momentum_lab.physics.push import Push
 from momentum_lab.physics.simulator import Simulator, Step
 from momentum_lab.robot.model import RobotModel
@@ -36,6 +37,14 @@ def world(engine: Engine, robot: RobotModel, ground: Ground, timestep: float) ->
     """
     if engine == "pinocchio":
         return Simulator(robot, ground, timestep)
-    from momentum_lab.physics.mujoco_engine import MujocoSimulator
-
     return MujocoSimulator(robot, ground, timestep)
+
+
+def check_ground(engine: Engine, ground: Ground) -> None:
+    """Refuse ground that an engine does not know.
+
+    Raises:
+        InputError: the engine is MuJoCo, and the ground is not a level floor at rest.
+    """
+    if engine == "mujoco":
+        check_level(ground)

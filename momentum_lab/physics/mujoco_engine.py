@@ -9,8 +9,8 @@ import numpy as np
 from momentum_lab.errors import InputError
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.wrench import cross
-from momentum_lab.physics.ground import Ground
-from momentum_lab.physics.mujoco_model import falling_model, load_mujoco
+from momentum_lab.physics.ground import Ground, Patch
+from momentum_lab.physics.mujoco_model import CONTACTS_PER_FOOT, falling_model, load_mujoco
 from momentum_lab.physics.push import AppliedPush, Push, apply_pushes
 from momentum_lab.physics.simulator import Step, driven, external_wrenches
 from momentum_lab.robot.model import RobotModel
@@ -57,7 +57,9 @@ class MujocoSimulator:
         self._model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_WARMSTART
         self._model.geom_solref[:] = _STEPS_OF_FLOOR * timestep, _CRITICAL
         self._model.jnt_solref[:] = _STOP_TIME, _CRITICAL
-        self._foot_of_geom = self._placed_on(ground)
+        check_level(ground)
+        self._ground = ground
+        self._foot_of_geom = self._on_the_floor(ground.floor)
         self._data: Any = mujoco.MjData(self._model)
         self._middle = 0.5 * (robot.position_lower + robot.position_upper)
         self._weight = robot.mass * GRAVITY
@@ -73,6 +75,9 @@ class MujocoSimulator:
         torque, _ = driven(torque, self.robot.effort_limit, dynamics.nonlinear_effects)
         push = apply_pushes(self.robot, self._push_data, dynamics, pushes, time, self.timestep)
         turn = self._begin(dynamics.state, torque, push)
+        friction = self._ground.friction(time)
+        soles = self._foot_of_geom != _OTHER
+        self._model.geom_friction[soles, 0] = friction[self._foot_of_geom[soles]]
         self._mujoco.mj_forward(self._model, self._data)
         wrenches, pressed = self._contact_wrenches(dynamics)
         velocity = dynamics.state.v + self.timestep * self._acceleration(dynamics.state, turn)
@@ -89,21 +94,15 @@ class MujocoSimulator:
             contact_residual=_sinking(dynamics, velocity, pressed),
         )
 
-    def _placed_on(self, ground: Ground) -> np.ndarray:
-        """Height and friction of the ground given to the model; which foot each of its shapes is on, or -1."""
-        planes = (ground.floor, *ground.under_feet)
-        heights = [float(plane.origin[2]) for plane in planes]
-        if any((plane.rotation[:, 2] != (0.0, 0.0, 1.0)).any() for plane in planes) or len(set(heights)) > 1:
-            raise InputError("engine", "mujoco", "pinocchio, because the ground is not level")
-        self._model.geom("floor").pos[2] = heights[0]
-        foot = np.full(self._model.ngeom, _OTHER)
+    def _on_the_floor(self, floor: Patch) -> np.ndarray:
+        """Height and friction of the floor given to the model; which foot each of its shapes is on, or -1."""
+        self._model.geom("floor").pos[2] = floor.origin[2]
         # MuJoCo takes the larger coefficient of the two shapes, hence none for the floor.
-        self._model.geom_friction[:, 0] = ground.floor.friction
+        self._model.geom_friction[:, 0] = floor.friction
         self._model.geom("floor").friction[0] = 0.0
-        for i, (sole, plane) in enumerate(zip(self.robot.soles, ground.under_feet, strict=True)):
-            shapes = [self._model.geom(f"{sole.name}_{k}").id for k in range(len(sole.corners))]
-            foot[shapes] = i
-            self._model.geom_friction[shapes, 0] = plane.friction
+        foot = np.full(self._model.ngeom, _OTHER)
+        for i, sole in enumerate(self.robot.soles):
+            foot[[self._model.geom(f"{sole.name}_{k}").id for k in range(CONTACTS_PER_FOOT)]] = i
         return foot
 
     def _begin(self, state: State, torque: np.ndarray, push: AppliedPush | None) -> np.ndarray:
@@ -183,3 +182,15 @@ def _sinking(dynamics: Dynamics, velocity: np.ndarray, pressed: np.ndarray) -> f
         of_sole = dynamics.sole_jacobian[int(foot)] @ velocity
         speed = max(speed, abs(of_sole[2] + cross(of_sole[3:], point - dynamics.sole_position[int(foot)])[2]))
     return float(speed)
+
+
+def check_level(ground: Ground) -> None:
+    """Refuse ground that is not one level floor at rest; its friction may differ and change.
+
+    Raises:
+        InputError: a plate is tilted, higher than another, or moves.
+    """
+    planes = (ground.floor, *ground.under_feet)
+    tilted = any((plane.rotation[:, 2] != (0.0, 0.0, 1.0)).any() for plane in planes)
+    if tilted or ground.motions or len({float(plane.origin[2]) for plane in planes}) > 1:
+        raise InputError("engine", "mujoco", "pinocchio, because the ground is tilted, moves or has a step")

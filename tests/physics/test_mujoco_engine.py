@@ -9,9 +9,11 @@ import pinocchio as pin
 import pytest
 
 from momentum_lab.errors import InputError
+from momentum_lab.events import MoveGround
 from momentum_lab.physics.engines import world
 from momentum_lab.physics.ground import Ground, Patch
 from momentum_lab.physics.mujoco_engine import MujocoSimulator
+from momentum_lab.physics.plate import PlateMotion
 from momentum_lab.physics.push import Push
 from momentum_lab.robot.posture import standing_posture
 from momentum_lab.robot.state import State
@@ -160,8 +162,29 @@ def test_a_robot_that_falls_lands_on_its_body(g1):
 
 def test_ground_that_is_not_level_is_refused_in_words(g1):
     tilted = Patch(0.7, rotation=pin.utils.rotate("y", 0.1))
-    with pytest.raises(InputError, match="engine: got mujoco; allowed: pinocchio, because the ground"):
-        world("mujoco", g1, Ground((tilted, tilted), Patch(0.7)), STEP)
+    high = Patch(0.7, origin=np.array([0.0, 0.0, 0.05]))
+    for plate in (tilted, high):
+        with pytest.raises(InputError, match="engine: got mujoco; allowed: pinocchio, because the ground"):
+            world("mujoco", g1, Ground((plate, Patch(0.7)), Patch(0.7)), STEP)
+
+
+def test_ground_that_is_to_move_is_refused_before_it_does(g1):
+    session = Session(Scenario("calm", robot="g1", engine="mujoco", seconds=0.1), robot=g1)
+    with pytest.raises(InputError, match="engine: got mujoco"):
+        session.post(MoveGround(PlateMotion(axis="x", amplitude=0.05)))
+    session.tick()
+
+
+def test_friction_changes_under_a_foot_at_its_time(g1):
+    """Feet that slide at 1 m/s before and after the change, in the same world."""
+    ground = Ground.level(2, 0.7).as_slippery_as(0.1, (1,), 0.5)
+    engine, state = MujocoSimulator(g1, ground, STEP), State(standing_posture(g1), np.zeros(g1.nv))
+    state.q[2] -= 1e-5
+    state.v[0] = 1.0
+    for time, expected in ((0.4, (0.7, 0.7)), (0.6, (0.7, 0.1))):
+        step = engine.step(g1.at(state), np.zeros(g1.na), (), time)
+        slope = np.linalg.norm(step.foot_wrench[:, :2], axis=1) / step.foot_wrench[:, 2]
+        assert_close(slope, expected, 1e-3)
 
 
 def test_without_mujoco_one_line_says_what_to_install(monkeypatch, g1):
