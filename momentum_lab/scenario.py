@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, get_args
 
 import msgspec
 
@@ -14,6 +14,7 @@ from momentum_lab.control.motion import ANGULAR_GOALS, AngularGoal
 from momentum_lab.errors import InputError, ScenarioError
 from momentum_lab.momentum.directions import directions
 from momentum_lab.paths import ASSETS
+from momentum_lab.physics.engines import Engine
 from momentum_lab.physics.ground import check_motion
 from momentum_lab.physics.plate import AXES, Course, Friction, FrictionChange, Plate, PlateMotion
 from momentum_lab.physics.push import Push, Shape
@@ -25,7 +26,7 @@ MAX_SEED = 2**32 - 1
 MAX_DISTANCE = 1000.0
 MAX_LEAN = 0.1
 MAX_DROP = 3.0
-ENGINES = ("pinocchio",)
+ENGINES = get_args(Engine)
 
 _CHOICES = {
     "engine": ENGINES,
@@ -103,7 +104,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ground_sense: GroundSense = "told"
     position: tuple[Coordinate, Coordinate] = (0.0, 0.0)
     heading_deg: Annotated[float, msgspec.Meta(ge=-360.0, le=360.0)] = 0.0
-    engine: Literal["pinocchio"] = "pinocchio"
+    engine: Engine = "pinocchio"
     seed: Annotated[int, msgspec.Meta(ge=0, le=MAX_SEED)] = 0
     timestep: Annotated[float, msgspec.Meta(ge=1e-4, le=2e-3)] = 1e-3
 

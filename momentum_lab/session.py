@@ -42,9 +42,10 @@ from momentum_lab.momentum.directions import Directions, directions
 from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.observe import Tick, observe
+from momentum_lab.physics.engines import check_ground, world
 from momentum_lab.physics.ground import Ground, checked_friction
 from momentum_lab.physics.push import Push
-from momentum_lab.physics.simulator import Simulator, Step
+from momentum_lab.physics.simulator import Step
 from momentum_lab.recording import Layout, Recording, Sample
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.posture import standing_posture
@@ -219,7 +220,7 @@ class Session:
         self.ticks = snapshot.ticks
         self.log = [entry for entry in self.log if entry.tick < snapshot.ticks]
         self._inbox.clear()
-        self._simulator = Simulator(self.robot, self._ground, self.scenario.timestep)
+        self._simulator = world(self.scenario.engine, self.robot, self._ground, self.scenario.timestep)
 
     def _drain_inbox(self) -> None:
         while self._inbox:
@@ -318,7 +319,8 @@ class Session:
                 self._feet_named(foot)
                 checked_friction(value)
             case MoveGround(motion, foot):
-                self._ground.moving_too(self._feet_named(foot), motion)
+                ground = self._ground.moving_too(self._feet_named(foot), motion)
+                check_ground(self.scenario.engine, ground)
             case SetGroundSense(sense):
                 ground_sense(sense)
             case SelectController(name):
@@ -376,7 +378,8 @@ class Session:
 
     def _change(self, ground: Ground) -> None:
         """Stand on another ground from now on."""
-        self._ground = self._simulator.ground = ground
+        self._ground = ground
+        self._simulator = world(self.scenario.engine, self.robot, ground, self.scenario.timestep)
 
     def _select(self, name: str) -> None:
         entry = controller_entry(name)
@@ -397,7 +400,7 @@ class Session:
         self._ground = self._first_ground
         self._known = self._ground.at(0.0)
         self._foot_wrench = np.zeros((len(self.robot.soles), 6))
-        self._simulator = Simulator(self.robot, self._ground, self.scenario.timestep)
+        self._simulator = world(self.scenario.engine, self.robot, self._ground, self.scenario.timestep)
         self._memory = self._controller.initial_memory(self.dynamics)
         self._torque = self._handover = None
         self._taken_over = False

@@ -140,7 +140,7 @@ def _impulse_ratio(session: Session, push: Push) -> float:
         return 0.0
     com = recording.column("com")[row]
     poses = recording.column("sole_pose")[row]
-    polygon = support_polygon(_corners_in_world(session, poses)[stance].reshape(-1, 3))
+    polygon = support_polygon(corners_in_world(session, poses)[stance].reshape(-1, 3))
     distance = distance_to_edge(com[:2], push.direction[:2], polygon)
     omega = pendulum_frequency(float(com[2] - poses[stance, 2].min()))
     bound = pendulum_impulse_bound(session.robot.mass, omega, distance, elapsed)
@@ -159,7 +159,7 @@ def _min_cop_margin(session: Session, until: float) -> float | None:
     recording = session.recording
     standing = recording.column("time") < until
     pressed = recording.column("foot_wrench_measured")[standing, :, 2] > _LEAST_SUPPORT
-    corners = _corners_in_world(session, recording.column("sole_pose")[standing])
+    corners = corners_in_world(session, recording.column("sole_pose")[standing])
     cops = recording.column("cop_measured")[standing]
     margins = [
         support_margin(cop, support_polygon(points[feet].reshape(-1, 3)))
@@ -169,7 +169,7 @@ def _min_cop_margin(session: Session, until: float) -> float | None:
     return min(margins, default=None)
 
 
-def _corners_in_world(session: Session, poses: np.ndarray) -> np.ndarray:
+def corners_in_world(session: Session, poses: np.ndarray) -> np.ndarray:
     """Corners of the soles (..., F, 4, 3) at sole poses (..., F, 7), m.
 
     x = p + 2 w (u x c) + 2 u x (u x c) + c for a corner c and the quaternion (u, w).

@@ -106,7 +106,7 @@ def test_changed_changes_only_what_it_is_told() -> None:
         ({"seconds": math.nan}, "seconds: got nan; allowed: a finite number"),
         ({"priority": math.inf}, "priority: got inf; allowed: a finite number"),
         ({"priority": 1.5}, "priority: got 1.5; allowed: number <= 1.0"),
-        ({"engine": "mujoco"}, "engine: got mujoco; allowed: one of pinocchio"),
+        ({"engine": "bullet"}, "engine: got bullet; allowed: one of pinocchio, mujoco"),
         ({"seed": 1.5}, "seed: got 1.5; allowed: whole number"),
         ({"friction": 0.0}, "friction: got 0.0; allowed: number > 0.0"),
         ({"position": [1.0]}, "position: got [1.0]; allowed: list of length 2"),

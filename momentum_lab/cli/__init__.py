@@ -1,4 +1,4 @@
-"""The command line: momentum-lab app | run | lesson | figure | list | equations | robot-check | bench.
+"""The command line: momentum-lab app | run | limit | lesson | figure | list | equations | robot-check | bench.
 
 Exit codes: 0 the command did what was asked (a robot that falls is a result, not an error), 1 something broke
 down on the way, a figure's or lesson's claim or an equation does not hold, or a checked robot falls, 2 bad
@@ -70,6 +70,10 @@ def _imported(name: str) -> Callable[[Namespace], int]:
         from momentum_lab.cli.run import run
 
         return run
+    if name == "limit":
+        from momentum_lab.cli.limit import limit
+
+        return limit
     if name == "lesson":
         from momentum_lab.cli.lesson import lesson
 
