@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, get_args
 
 import msgspec
 
+from momentum_lab.beside import Beside
 from momentum_lab.control.motion import ANGULAR_GOALS, AngularGoal
 from momentum_lab.errors import InputError, ScenarioError
 from momentum_lab.momentum.directions import directions
@@ -63,6 +64,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         engine: which physics answers.
         seed: seed of everything random in the run; recorded, and so far nothing is random.
         timestep: length of a tick of control and physics, s.
+        beside: what a second robot beside the first does differently; None: there is none.
     """
 
     name: str
@@ -86,6 +88,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     engine: Literal["pinocchio"] = "pinocchio"
     seed: Annotated[int, msgspec.Meta(ge=0, le=MAX_SEED)] = 0
     timestep: Annotated[float, msgspec.Meta(ge=1e-4, le=2e-3)] = 1e-3
+    beside: Beside | None = None
 
 
 def scenario_names() -> list[str]:
@@ -117,6 +120,23 @@ def changed(scenario: Scenario, **changes: Any) -> Scenario:
         ScenarioError: a value is not allowed; the message names the field.
     """
     return _converted({**msgspec.to_builtins(scenario), **msgspec.to_builtins(changes)})
+
+
+def sides(scenario: Scenario) -> tuple[Scenario, ...]:
+    """The scenario of every robot in it: the first one's, and that of the robot beside it if there is one.
+
+    Both start at the same place, so that two robots without a difference move bit for bit alike.
+    """
+    beside, first = scenario.beside, msgspec.structs.replace(scenario, beside=None)
+    if beside is None:
+        return (first,)
+    same = beside.controller in (None, scenario.controller)
+    changes: dict[str, Any] = {"gains": {**(scenario.gains if same else {}), **beside.gains}}
+    if beside.controller is not None:
+        changes["controller"] = beside.controller
+    if beside.priority is not None:
+        changes["priority"] = beside.priority
+    return first, msgspec.structs.replace(first, **changes)
 
 
 def checked(scenario: Scenario) -> Scenario:
@@ -152,7 +172,8 @@ def _explained(rule: str, field: str, data: Any) -> tuple[object, str]:
     for key in re.findall(r"\w+", field):
         given = given[int(key)] if isinstance(given, list | tuple) else given[key]
     if "unknown field" in rule:
-        fields = (Push if field.startswith("pushes") else Scenario).__struct_fields__
+        parts = {"pushes": Push, "beside": Beside}
+        fields = parts.get(re.split(r"\W", field)[0], Scenario).__struct_fields__
         return rule.split("`")[1], f"the fields {', '.join(fields)}"
     if "missing required field" in rule:
         return "nothing", rule.removeprefix("Object missing required ").replace("`", "")

@@ -8,7 +8,16 @@ from collections.abc import Collection
 import msgspec
 
 from momentum_lab.errors import InputError
-from momentum_lab.events import ApplyPush, Event, LoadScenario, LookBack, SelectRobot, SetSpeed, StepOnce
+from momentum_lab.events import (
+    ApplyPush,
+    Event,
+    Foresee,
+    LoadScenario,
+    LookBack,
+    SelectRobot,
+    SetSpeed,
+    StepOnce,
+)
 from momentum_lab.physics.push import Push
 
 SLOWEST = 1.0 / 8.0
@@ -44,6 +53,8 @@ def checked_event(event: Event, robots: Collection[str], scenarios: Collection[s
             raise InputError("scenario", name, f"one of {', '.join(scenarios)}")
         case ApplyPush(push):
             return ApplyPush(_checked_push(push))
+        case Foresee(push):
+            return Foresee(_checked_push(push))
     return event
 
 
