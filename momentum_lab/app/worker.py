@@ -18,7 +18,16 @@ from threadpoolctl import threadpool_limits
 
 from momentum_lab.app.pacer import Pacer
 from momentum_lab.app.playback import Playback
-from momentum_lab.app.wire import Foreseen, Frame, FrameTaken, FrameWanted, Other, Truth, packed, unpacked_message
+from momentum_lab.app.wire import (
+    Foreseen,
+    Frame,
+    FrameTaken,
+    FrameWanted,
+    Other,
+    Truth,
+    packed,
+    unpacked_message,
+)
 from momentum_lab.errors import LabError
 from momentum_lab.events import Event, Play, SetSpeed
 from momentum_lab.scenario import Scenario

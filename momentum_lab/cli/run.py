@@ -25,9 +25,9 @@ def run(args: Namespace) -> int:
     """Run a scenario, save its trace if asked to, print its summary.
 
     A scenario with two robots is run for both; the trace is the first one's, and so is the summary, which holds
-    that of the other. A simulation that breaks down (its state is not finite any more) is reported on stderr with exit code 1;
-    what was recorded before is saved and summarized, as a fall. Ctrl+C saves what there is and prints no
-    summary.
+    that of the other. A simulation that breaks down (its state is not finite any more) is reported on stderr
+    with exit code 1; what was recorded before is saved and summarized, as a fall. Ctrl+C saves what there is and
+    prints no summary.
 
     Raises:
         InputError: something that was typed cannot be used.
