@@ -15,6 +15,8 @@ _COVERED = 0.62
 _USUAL_ASPECT = 1.5
 # From here two robots that stand side by side are seen beside each other, degrees.
 _AZIMUTH_OF_TWO = -42.0
+# Beside two robots there is room for one that lies on the ground, in CoM heights.
+_ROOM_TO_FALL = 0.35
 # A picture whose width over height differs by more than this has another shape.
 _OTHER_SHAPE = 0.03
 # How far the robot may move before the view goes along, in CoM heights: while it stands, and when it has fallen.
@@ -118,7 +120,7 @@ def of_two(view: View, spread: np.ndarray) -> View:
     """
     azimuth = view.azimuth if view.azimuth in (0.0, -90.0) else _AZIMUTH_OF_TWO
     across = np.array([-math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))])
-    return replace(view, azimuth=azimuth, width=view.width + abs(float(across @ spread)))
+    return replace(view, azimuth=azimuth, width=view.width + _ROOM_TO_FALL + abs(float(across @ spread)))
 
 
 def camera_pose(view: View, size: float, center: np.ndarray, aspect: float) -> tuple[np.ndarray, np.ndarray]:

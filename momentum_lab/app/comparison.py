@@ -44,6 +44,11 @@ class Comparison:
         """From the first robot to the one beside it (2,), m; None without one."""
         return None if self._side is None else self._side.offset
 
+    @property
+    def other_fell(self) -> bool:
+        """Whether the robot beside the first has fallen."""
+        return self._other is not None and self._other.fall is not None
+
     def middle(self, place: np.ndarray) -> np.ndarray:
         """Between the first robot, seen from above (2,), and the one beside it; the first one's place without one."""
         return place if self._side is None else 0.5 * (place + self._side.place_on_ground)

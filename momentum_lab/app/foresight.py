@@ -11,7 +11,7 @@ from momentum_lab.physics.push import Push
 from momentum_lab.session import Session
 from momentum_lab.timeline import fork
 
-SECONDS = 2.0
+SECONDS = 1.5
 """How far it looks, s of simulated time."""
 
 # Ticks between two samples of the answer.

@@ -15,7 +15,9 @@ from momentum_lab.recording import Sample
 
 _ROOT = "/beside"
 # How far to the left of the first robot the second one is drawn, and how far above its CoM its name, in CoM heights.
-_APART, _ABOVE = 1.5, 1.12
+_APART, _ABOVE = 1.5, 1.08
+# And how far at least when it has fallen, in heights of the CoM of a standing robot.
+_LOWEST = 0.35
 # Names follow a body that moves further than this, m.
 _SAME_PLACE = 5e-3
 # The second robot has the labels of what differs; the others would be read twice.
@@ -84,16 +86,17 @@ class NamePlate:
     """
 
     def __init__(self, client: viser.ClientHandle, name: str, size: float) -> None:
-        self._above = np.array([0.0, 0.0, _ABOVE * size])
-        self._at = self._above
+        self._size = size
+        self._at = np.zeros(3)
         self._handle = client.scene.add_label(
-            name, "", position=tuple(self._at), anchor="bottom-center", font_screen_scale=1.3
+            name, "", position=self._at, anchor="bottom-center", font_screen_scale=1.3
         )
 
     def draw(self, words: str, com: np.ndarray) -> None:
         """Show words above a CoM (3,), m."""
         self._handle.text = words
-        at = com + self._above
+        above = max(_LOWEST * self._size, _ABOVE * float(com[2]))
+        at = com + np.array([0.0, 0.0, above])
         if np.isfinite(at).all() and np.abs(at - self._at).max() > _SAME_PLACE:
             self._at = at
             self._handle.position = tuple(at.tolist())

@@ -183,7 +183,7 @@ class Visitor:
         )
         stage.body.draw(sample["q"])
         place = self._comparison.middle(sample["com"][:2])
-        stage.camera.follow(place, LOOSE if truth.fall is None else TIGHT)
+        stage.camera.follow(place, LOOSE if truth.fall is None and not self._comparison.other_fell else TIGHT)
         stage.marks.draw(overlays(sample, picture), settings.shown, settings.labelled)
 
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:

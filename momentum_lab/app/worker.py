@@ -43,7 +43,7 @@ _SHORT, _LONG = 0.001, 1.0
 # Messages taken in a row: a flood of them must not stop time.
 _MOST_MESSAGES = 16
 # Ticks of a foresight in a row: while time runs, as long as a due tick may wait; in a pause, as long as a person may.
-_AHEAD, _AHEAD_IN_PAUSE = 2, 50
+_AHEAD, _AHEAD_IN_PAUSE = 5, 50
 # Samples that a reader who does not read may miss.
 _MOST_HISTORY = 1000
 
