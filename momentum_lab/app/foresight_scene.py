@@ -13,7 +13,9 @@ from momentum_lab.app.wire import Foreseen, rows_of
 
 # So much of the path is drawn, so much is left out, in samples: dashes say that it has not happened.
 _DASH, _GAP = 3, 1
-_THICKNESS, _RAISED = 0.006, 0.008
+_THICKNESS, _RAISED = 0.008, 0.010
+# How far above the furthest CoM the words are, in CoM heights: next to it is the name of the CoM itself.
+_LABEL_ABOVE = 0.12
 
 
 class ForesightScene:
@@ -32,9 +34,11 @@ class ForesightScene:
         rows, at = rows_of(foreseen.rows, robot.layout.width), robot.layout.slices
         com, capture = rows[:, at["com"]], rows[:, at["capture_point"]]
         ground = float(rows[0, at["sole_pose"]].reshape(-1, 7)[:, 2].min()) + _RAISED
+        below = np.full(len(rows), ground)
         paths = {
             "com": com,
-            "capture": np.column_stack([capture, np.full(len(rows), ground)]),
+            "com_ground": np.column_stack([com[:, :2], below]),
+            "capture": np.column_stack([capture, below]),
         }
         self._handles: list[Any] = [
             client.scene.add_line_segments(
@@ -42,10 +46,12 @@ class ForesightScene:
             )
             for key, path in paths.items()
         ]
-        end = com[np.isfinite(com).all(axis=1)][-1]
+        way = np.linalg.norm(com[:, :2] - com[0, :2], axis=1)
+        furthest = com[int(np.nanargmax(way))] + np.array([0.0, 0.0, _LABEL_ABOVE * com[0, 2]])
+        words = words_of(foreseen, float(np.nanmax(way)))
         self._handles.append(
             client.scene.add_label(
-                f"{root}/foreseen/end", words_of(foreseen), position=tuple(end.tolist()), anchor="bottom-left"
+                f"{root}/foreseen/end", words, position=furthest, anchor="bottom-left", font_screen_scale=1.1
             )
         )
 
@@ -62,8 +68,8 @@ def dashes(path: np.ndarray) -> np.ndarray:
     return np.asarray(pairs[drawn & np.isfinite(pairs).all(axis=(1, 2))], dtype=np.float32)
 
 
-def words_of(foreseen: Foreseen) -> str:
-    """How it would end."""
+def words_of(foreseen: Foreseen, way: float) -> str:
+    """How it would end, and how far the CoM would go, m."""
     if foreseen.fall is None:
-        return "would stand"
+        return f"would stand, CoM {1e3 * way:.0f} mm on its way"
     return f"would fall after {foreseen.fall.time - foreseen.start:.2f} s"
