@@ -16,7 +16,7 @@ _USUAL_ASPECT = 1.5
 # From here two robots that stand side by side are seen beside each other, degrees.
 _AZIMUTH_OF_TWO = -42.0
 # Beside two robots there is room for one that lies on the ground, in CoM heights.
-_ROOM_TO_FALL = 0.35
+_ROOM_TO_FALL = 0.7
 # A picture whose width over height differs by more than this has another shape.
 _OTHER_SHAPE = 0.03
 # How far the robot may move before the view goes along, in CoM heights: while it stands, and when it has fallen.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import viser
 
-from momentum_lab.app.differences import differences, names_of
+from momentum_lab.app.differences import differences, names_of, with_choices
 from momentum_lab.app.foresight_scene import ForesightScene
 from momentum_lab.app.ghost import Ghost, KeptRun
 from momentum_lab.app.overlays import Picture
@@ -33,6 +33,8 @@ class Comparison:
         self._loaded: LoadedRobot | None = None
         self._truth: Truth | None = None
         self._other: Truth | None = None
+        # What was the case when the latest push began: a slider that moves later belongs to the next run.
+        self._pushed: tuple[Truth, Truth | None] | None = None
         self._stories: list[Story] = []
         self._side: SideScene | None = None
         self._ghost: Ghost | None = None
@@ -69,6 +71,7 @@ class Comparison:
                 self._leave_side()
         self._loaded, self._truth = loaded, frame.truth
         self._other = None if frame.other is None else frame.other.truth
+        self._note_push()
 
     def draw(self, frame: Frame, sample: Sample, settings: ViewSettings) -> bool:
         """Draw what belongs beside the robot; whether a second robot has come or gone.
@@ -105,7 +108,7 @@ class Comparison:
         if self._ghost is not None:
             self._ghost.show(panel.shows_ghost)
         if panel.is_time():
-            self._compare(frame.truth, panel)
+            self._compare(panel)
 
     def _draw_other(self, other: Other, first: Truth, sample: Sample, settings: ViewSettings) -> None:
         if self._loaded is None:
@@ -125,12 +128,31 @@ class Comparison:
         if self._side is not None:
             self._side.see_through(on)
 
+    def _note_push(self) -> None:
+        """Remember the choices under which the robots were pushed."""
+        if self._truth is None or self._truth.push is None:
+            self._pushed = None
+        elif self._pushed is None or (self._pushed[0].run, self._pushed[0].push) != (
+            self._truth.run,
+            self._truth.push,
+        ):
+            self._pushed = (self._truth, self._other)
+
+    def _as_pushed(self) -> tuple[Truth, Truth | None]:
+        """What is the case with both robots, with the choices under which they were pushed."""
+        assert self._truth is not None
+        if self._pushed is None:
+            return self._truth, self._other
+        first, other = self._pushed
+        other = self._other if self._other is None or other is None else with_choices(self._other, other)
+        return with_choices(self._truth, first), other
+
     def _keep(self, plots: Plots) -> None:
         """Keep the run of now."""
         if self._truth is None or self._loaded is None or not len(self._stories[0]):
             return
         self._forget()
-        self.kept = KeptRun(self._truth, self._loaded, self._stories[0].copy())
+        self.kept = KeptRun(self._as_pushed()[0], self._loaded, self._stories[0].copy())
         self._ghost = Ghost(self._client, self.kept)
         plots.keep()
 
@@ -154,12 +176,13 @@ class Comparison:
                 if each.rows and (not root or self._side is not None)
             ]
 
-    def _compare(self, truth: Truth, panel: RunsPanel) -> None:
+    def _compare(self, panel: RunsPanel) -> None:
         """Put the runs side by side in the table."""
+        truth, other = self._as_pushed()
         runs: list[tuple[str, Truth, Story]] = [(_NOW, truth, self._stories[0])]
-        if self._other is not None:
-            names = names_of(truth, self._other)
-            runs = [(names[0], truth, self._stories[0]), (names[1], self._other, self._stories[1])]
+        if other is not None:
+            names = names_of(truth, other)
+            runs = [(names[0], truth, self._stories[0]), (names[1], other, self._stories[1])]
         if self.kept is not None:
             runs.insert(0, (_KEPT, self.kept.truth, self.kept.story))
         runs = [run for run in runs if len(run[2])]

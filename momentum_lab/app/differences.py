@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import msgspec
+
 from momentum_lab.app.wire import Truth
 from momentum_lab.physics.push import Push
 
@@ -31,6 +33,20 @@ def differences(truths: Sequence[Truth]) -> dict[str, tuple[str, ...]]:
     names = dict.fromkeys(name for each in chosen for name in each)
     values = {name: tuple(each.get(name, NOTHING) for each in chosen) for name in names}
     return {name: found for name, found in values.items() if len(set(found)) > 1}
+
+
+def with_choices(truth: Truth, chosen: Truth) -> Truth:
+    """What is the case in a run, with the choices of another moment of it."""
+    return msgspec.structs.replace(
+        truth,
+        controller=chosen.controller,
+        priority=chosen.priority,
+        planner=chosen.planner,
+        controlled=chosen.controlled,
+        motion=chosen.motion,
+        angular_goal=chosen.angular_goal,
+        gains=chosen.gains,
+    )
 
 
 def names_of(first: Truth, second: Truth) -> tuple[str, str]:

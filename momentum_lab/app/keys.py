@@ -1,4 +1,4 @@
-"""Keys and commands. Space and arrows stay with the widgets."""
+"""Keys and commands. Space and arrows stay with the widgets; W, A, S, D, Q and E move the camera."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _HELP = """
 **P** push &nbsp;·&nbsp; **K** play or pause &nbsp;·&nbsp; **J** step 1 ms &nbsp;·&nbsp; **L** step 20 ms
 &nbsp;·&nbsp; **R** stand up again &nbsp;·&nbsp; **1 2 3 4** tabs &nbsp;·&nbsp; **H** this help
 
-**W** what would this push do &nbsp;·&nbsp; **A** keep this run as A &nbsp;·&nbsp; **N** same pushes again
+**F** what would this push do &nbsp;·&nbsp; **M** keep this run as A &nbsp;·&nbsp; **N** same pushes again
 &nbsp;·&nbsp; **G** show or hide A
 
 *Look back* shows what was; **B** goes on from the instant you look at, with other gains if you like.
@@ -48,8 +48,8 @@ def add_keys(
         ("Push", "P", push.apply),
         ("Repeat the last push", None, push.apply_again),
         ("Play or pause", "K", status.toggle),
-        ("What would this push do?", "W", push.ask),
-        ("Keep this run as A", "A", runs.keep),
+        ("What would this push do?", "F", push.ask),
+        ("Keep this run as A", "M", runs.keep),
         ("Same pushes again", "N", runs.run_again),
         ("Show or hide A", "G", runs.toggle_ghost),
         ("Step 1 ms", "J", lambda: post(StepOnce(SMALL_STEP))),

@@ -55,7 +55,7 @@ class PushPanel:
         gui.add_html(html.BIG_NEXT)
         self.button = gui.add_button("Push  (P)", color=(213, 94, 0), icon=viser.Icon.HAND_MOVE)
         self._ask = gui.add_button(
-            "What would it do?  (W)",
+            "What would it do?  (F)",
             color="gray",
             icon=viser.Icon.EYE,
             hint="Tries the push on a copy of the robot and draws where its CoM and capture point would go.",

@@ -23,7 +23,7 @@ from momentum_lab.events import RunAgain, SetBeside
 AS_FIRST = "as the first"
 # How often the table changes on the screen, s.
 _PERIOD = 0.3
-_KEEP, _AGAIN = "Keep this run as A  (A)", "Same pushes again  (N)"
+_KEEP, _AGAIN = "Keep this run as A  (M)", "Same pushes again  (N)"
 
 
 class RunsPanel:
@@ -198,4 +198,4 @@ def _seconds(value: float | None) -> str:
 
 
 def _millimetres(value: float | None) -> str:
-    return NOTHING if value is None else f"{1e3 * value:.0f} mm"
+    return NOTHING if value is None else f"{round(1e3 * value)} mm"

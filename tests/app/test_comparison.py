@@ -129,12 +129,15 @@ def test_running_again_keeps_the_run_before_it():
     desk = Desk(None)
     desk.playback.take(ApplyPush(Push(force=150.0)))
     desk.play(100)
+    desk.playback.take(SetPriority(1.0))  # after the push: meant for the next run
+    desk.show()
     desk.panel.run_again()
     assert desk.posted == [RunAgain()]
     desk.playback.take(RunAgain())
     desk.show()
     assert desk.comparison.kept is not None
-    assert len(desk.comparison.kept.story) == 6
+    assert (desk.comparison.kept.truth.priority, desk.playback.session.priority) == (0.0, 1.0)
+    assert len(desk.comparison.kept.story) == 6  # of 100 ms
     desk.panel.run_again()
     assert not desk.panel.wants_kept  # A stays A
 

@@ -60,7 +60,7 @@ def test_a_push_is_only_tried(served: Served, open_page: Opener) -> None:
     lab = open_page(served.url).until_furnished()
     pause(lab)
     before = lab.picture(CANVAS)
-    lab.press("w")
+    lab.press("f")
     lab.page.wait_for_timeout(3000)
     after = lab.picture(CANVAS)
     lab.save(OUTPUT / "what_if_test.png")
