@@ -71,5 +71,5 @@ def dashes(path: np.ndarray) -> np.ndarray:
 def words_of(foreseen: Foreseen, way: float) -> str:
     """How it would end, and how far the CoM would go, m."""
     if foreseen.fall is None:
-        return f"would stand, CoM {1e3 * way:.0f} mm on its way"
+        return f"would stand; the CoM goes {1e3 * way:.0f} mm"
     return f"would fall after {foreseen.fall.time - foreseen.start:.2f} s"

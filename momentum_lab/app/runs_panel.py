@@ -70,7 +70,9 @@ class RunsPanel:
             post,
         )
         gui.add_html(
-            html.sentence("Keep a run, change something, push again: the kept run goes along as a ghost.")
+            html.sentence(
+                "Keep a run, change something, push again: the kept run goes along as a ghost, its curves dashed."
+            )
         )
         keep = gui.add_button(_KEEP, color=(0, 114, 178), icon=viser.Icon.PIN)
         again = gui.add_button(_AGAIN, color=(213, 94, 0), icon=viser.Icon.REPEAT)

@@ -92,7 +92,7 @@ def test_paths_lead_from_where_the_robot_is_to_where_it_would_be(talos, pushed):
     drawn = client.scene.nodes["/foreseen/com"].points
     np.testing.assert_allclose(drawn[0, 0], com[0], atol=1e-6)
     assert drawn[:, :, 0].max() == pytest.approx(com[:, 0].max(), abs=1e-3)
-    assert "would stand, CoM " in client.scene.nodes["/foreseen/end"].text
+    assert "would stand; the CoM goes " in client.scene.nodes["/foreseen/end"].text
     scene.remove()
     assert all(node.removed for node in client.scene.nodes.values())
 
