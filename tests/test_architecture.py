@@ -29,6 +29,7 @@ FLOORS: tuple[frozenset[str], ...] = (
             "observe",
             "recording",
             "session",
+            "terrain",
             "timeline",
             "status",
             "headless",

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from momentum_lab.beside import Beside
 from momentum_lab.control.gains import declared_gains, with_gains
+from momentum_lab.control.ground_sense import GroundSense
 from momentum_lab.control.motion import AngularGoal
 from momentum_lab.control.planner import OWN
 from momentum_lab.control.registry import controller_entry
@@ -18,6 +19,7 @@ from momentum_lab.events import (
     SetAngularGoal,
     SetDirections,
     SetGain,
+    SetGroundSense,
     SetMotion,
     SetPriority,
 )
@@ -36,6 +38,7 @@ class Chosen:
     motion: str
     angular_goal: AngularGoal
     gains: dict[str, float]
+    ground_sense: GroundSense = "told"
 
     def until(self, other: Chosen) -> list[SessionEvent]:
         """The events that lead from these choices to others."""
@@ -52,6 +55,8 @@ class Chosen:
             events.append(SelectPlanner(other.planner))
         if other.motion != self.motion:
             events.append(SetMotion(other.motion))
+        if other.ground_sense != self.ground_sense:
+            events.append(SetGroundSense(other.ground_sense))
         if other.angular_goal != self.angular_goal:
             events.append(SetAngularGoal(other.angular_goal))
         return events + [SetGain(name, value) for name, value in other.gains.items() if value != gains[name]]
@@ -82,6 +87,7 @@ def chosen_of(session: Session, waiting: Iterable[SessionEvent]) -> Chosen:
     priority, controlled = session.priority, text_of(session.controlled)
     motion, angular_goal = session.motion, session.angular_goal
     controller, planner, gains = session.controller, session.planner, values_of(session.gains)
+    sense = session.ground_sense
     for event in waiting:
         match event:
             case SetPriority(value):
@@ -94,12 +100,14 @@ def chosen_of(session: Session, waiting: Iterable[SessionEvent]) -> Chosen:
                 motion = name
             case SetAngularGoal(goal):
                 angular_goal = goal
+            case SetGroundSense(told_or_felt):
+                sense = told_or_felt
             case SetGain(name, value):
                 gains[name] = value
             case SelectController(name):
                 controller, gains = name, values_of(controller_entry(name).gains)
                 planner = planner if planner in controller_entry(name).planners else OWN
-    return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains)
+    return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains, sense)
 
 
 def values_of(gains: object) -> dict[str, float]:

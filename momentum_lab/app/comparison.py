@@ -8,7 +8,6 @@ import viser
 from momentum_lab.app.differences import differences, names_of, with_choices
 from momentum_lab.app.foresight_scene import ForesightScene
 from momentum_lab.app.ghost import Ghost, KeptRun
-from momentum_lab.app.overlays import Picture
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.runs_panel import RunsPanel
@@ -118,10 +117,8 @@ class Comparison:
         if self._side is None:
             self._side = SideScene(self._client, loaded, beside)
             self._side.see_through(settings.see_through)
-        truth = other.truth
-        picture = Picture(loaded.model, truth.push, truth.gains.get("safe_border", 0.0), settings.arrow_scale)
-        self._side.draw(beside, picture, settings)
-        self._side.name(names_of(first, truth), (sample["com"], beside["com"]))
+        self._side.draw(beside, other.truth, settings)
+        self._side.name(names_of(first, other.truth), (sample["com"], beside["com"]))
 
     def see_through(self, on: bool) -> None:
         """Whether marks inside a body show."""

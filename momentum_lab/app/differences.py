@@ -22,6 +22,8 @@ def choices(truth: Truth) -> dict[str, str]:
         "directions": truth.controlled,
         "motion": truth.motion or "stand still",
         "angular goal": truth.angular_goal,
+        "how the ground moves": truth.ground_sense,
+        "friction of the ground": ", ".join(f"{value:g}" for value in dict.fromkeys(truth.friction)),
         "push": NOTHING if truth.first_push is None else push_in_words(truth.first_push),
         **{name.replace("_", " "): f"{value:g}" for name, value in truth.gains.items()},
     }
@@ -45,6 +47,7 @@ def with_choices(truth: Truth, chosen: Truth) -> Truth:
         controlled=chosen.controlled,
         motion=chosen.motion,
         angular_goal=chosen.angular_goal,
+        ground_sense=chosen.ground_sense,
         gains=chosen.gains,
     )
 

@@ -8,6 +8,7 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.control_panel import Choices, ControlPanel
+from momentum_lab.app.ground_panel import GroundPanel
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
 from momentum_lab.app.plots import Plots
@@ -35,6 +36,7 @@ class Panels:
         redraw: asks for a new picture.
         choices: robots and scenarios to choose from.
         truth: what is the case at the start.
+        feet: names of the robot's feet.
     """
 
     def __init__(
@@ -46,6 +48,7 @@ class Panels:
         redraw: Callable[[], None],
         choices: Choices,
         truth: Truth,
+        feet: tuple[str, ...],
     ) -> None:
         gui = client.gui
         gui.configure_theme(show_share_button=False, show_logo=False, brand_color=(0, 114, 178))
@@ -58,6 +61,7 @@ class Panels:
         group = gui.add_tab_group()
         with group.add_tab("Push", viser.Icon.HAND_MOVE):
             self.push = PushPanel(gui, post, tell, redraw)
+            self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control", viser.Icon.ADJUSTMENTS):
             self.control = ControlPanel(gui, post, choices, truth)
         with group.add_tab("View", viser.Icon.EYE):

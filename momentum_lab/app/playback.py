@@ -18,6 +18,7 @@ from momentum_lab.events import (
     Foresee,
     LoadScenario,
     LookBack,
+    MoveGround,
     Pause,
     Play,
     Reset,
@@ -25,8 +26,10 @@ from momentum_lab.events import (
     SelectRobot,
     SessionEvent,
     SetBeside,
+    SetFriction,
     SetSpeed,
     StepOnce,
+    StopGround,
 )
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
@@ -148,6 +151,10 @@ class Playback:
             failures=session.solver_failures,
             stopped=self.stopped,
             push=_latest(session.pushes, self.shown.number("time")),
+            friction=tuple(session.ground.friction(self.shown.number("time")).tolist()),
+            uneven=not session.ground.is_floor,
+            floor=float(session.ground.floor.origin[2]),
+            ground_sense=chosen.ground_sense,
             behind=self._behind * session.scenario.timestep,
             first_push=_first(session.pushes, self.shown.number("time")),
             beside=None if self.beside is None else self.beside.beside,
@@ -210,7 +217,7 @@ class Playback:
         if self.beside is not None:
             self.beside.take(event)
             self.beside.align(chosen_of(self.session, self._waiting))
-        if isinstance(event, ApplyPush):
+        if isinstance(event, ApplyPush | MoveGround | StopGround | SetFriction):
             self._behind = 0  # it acts now, and has to be seen
         if isinstance(event, Reset):
             self._behind = 0
@@ -281,6 +288,7 @@ class Playback:
             planner=truth.planner,
             motion=truth.motion if truth.motion in load_spec(name).motions else "",
             angular_goal=truth.angular_goal,
+            ground_sense=truth.ground_sense,
             gains=gains,
             beside=truth.beside,
         )

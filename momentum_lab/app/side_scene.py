@@ -8,9 +8,11 @@ import viser
 
 from momentum_lab.app.mark_scene import MarkScene
 from momentum_lab.app.overlays import Picture, overlays
+from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.view_panel import ViewSettings
+from momentum_lab.app.wire import Truth
 from momentum_lab.recording import Sample
 
 _ROOT = "/beside"
@@ -35,11 +37,12 @@ class SideScene:
 
     def __init__(self, client: viser.ClientHandle, robot: LoadedRobot, sample: Sample) -> None:
         size = float(sample["com"][2])
-        self._com = sample["com"].copy()
+        self._loaded, self._com = robot, sample["com"].copy()
         self.offset = _APART * size * _left(sample["q"])
         self._node = client.scene.add_frame(_ROOT, position=np.append(self.offset, 0.0), show_axes=False)
         self._body = RobotScene(client, robot, sample["q"], f"{_ROOT}/robot")
         self._marks = MarkScene(client, size, _ROOT)
+        self._plates = PlateScene(client, robot.model, _ROOT)
         self._names = [NamePlate(client, "/name", size), NamePlate(client, f"{_ROOT}/name", size)]
 
     @property
@@ -47,8 +50,17 @@ class SideScene:
         """Where the second robot is drawn, seen from above (2,), m."""
         return self._com[:2] + self.offset
 
-    def draw(self, sample: Sample, picture: Picture, settings: ViewSettings) -> None:
-        """Move to a sample."""
+    def draw(self, sample: Sample, truth: Truth, settings: ViewSettings) -> None:
+        """Move to a sample.
+
+        Args:
+            sample: the second robot's.
+            truth: what is the case with it.
+            settings: what a person has chosen to see.
+        """
+        border = truth.gains.get("safe_border", 0.0)
+        picture = Picture(self._loaded.model, truth.push, border, settings.arrow_scale)
+        self._plates.draw(sample["ground_pose"], truth.friction, truth.uneven)
         self._com = sample["com"].copy()
         self._body.draw(sample["q"])
         self._marks.draw(overlays(sample, picture), settings.shown, settings.labelled & _LABELLED)
@@ -71,6 +83,7 @@ class SideScene:
         """Leave the scene, with both names."""
         self._body.remove()
         self._marks.remove()
+        self._plates.remove()
         for plate in self._names:
             plate.remove()
         self._node.remove()
