@@ -6,6 +6,7 @@ import numpy as np
 import viser
 
 from momentum_lab.app.differences import differences, names_of, with_choices
+from momentum_lab.app.foresight import SECONDS
 from momentum_lab.app.foresight_scene import ForesightScene
 from momentum_lab.app.ghost import Ghost, KeptRun
 from momentum_lab.app.plots import Plots
@@ -38,6 +39,7 @@ class Comparison:
         self._side: SideScene | None = None
         self._ghost: Ghost | None = None
         self._paths: list[ForesightScene] = []
+        self._foreseen_at = 0.0
         self.kept: KeptRun | None = None
 
     @property
@@ -101,6 +103,8 @@ class Comparison:
             self._stories[1].add(rows_of(frame.other.history, width))
         if frame.foreseen:
             self._foresee(frame)
+        elif self._has_come_true(frame.truth, sample.number("time")):
+            self._show_paths(())
         panel.follow(frame.truth, self.kept is not None)
         if self.kept is not None:
             plots.ahead = self.kept.ahead(frame.truth, sample.number("time"))
@@ -160,7 +164,15 @@ class Comparison:
 
     def _foresee(self, frame: Frame) -> None:
         roots = ("", "/beside")
+        self._foreseen_at = frame.foreseen[0].start
         self._show_paths(tuple(zip(roots, frame.foreseen, strict=False)))
+
+    def _has_come_true(self, truth: Truth, simulated: float) -> bool:
+        """Whether the robot has been pushed since it was foreseen, and all of that is over."""
+        push = truth.push
+        return (
+            bool(self._paths) and push is not None and self._foreseen_at <= push.start < simulated - SECONDS
+        )
 
     def _show_paths(self, foreseen: tuple) -> None:
         for path in self._paths:

@@ -14,6 +14,7 @@ from momentum_lab.app.comparison import Comparison
 from momentum_lab.app.control_panel import Choices
 from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
+from momentum_lab.app.marks import FEW_LABELS
 from momentum_lab.app.overlays import Picture, overlays
 from momentum_lab.app.panels import Panels
 from momentum_lab.app.plate_scene import PlateScene
@@ -195,7 +196,9 @@ class Visitor:
         stage.body.draw(sample["q"])
         place = self._comparison.middle(sample["com"][:2])
         stage.camera.follow(place, LOOSE if truth.fall is None and not self._comparison.other_fell else TIGHT)
-        stage.marks.draw(overlays(sample, picture), settings.shown, settings.labelled)
+        alone = self._comparison.spread is None
+        labelled = settings.labelled if alone else settings.labelled & FEW_LABELS
+        stage.marks.draw(overlays(sample, picture), settings.shown, labelled)
 
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
         truth = frame.truth

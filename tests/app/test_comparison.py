@@ -13,12 +13,14 @@ from momentum_lab.app.plots import Plots
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.runs_panel import AS_FIRST, RunsPanel
 from momentum_lab.app.view_panel import ViewSettings
-from momentum_lab.app.wire import Frame, Other
+from momentum_lab.app.wire import Foreseen, Frame, Other
 from momentum_lab.beside import Beside
-from momentum_lab.events import ApplyPush, Reset, RunAgain, SetBeside, SetPriority
+from momentum_lab.events import ApplyPush, Foresee, Reset, RunAgain, SetBeside, SetPriority
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
 from tests.app.fakes import FakeClient
+
+PUSH = Push(force=150.0)
 
 
 class Desk:
@@ -32,6 +34,7 @@ class Desk:
         self.panel = RunsPanel(self.client.gui, self.posted.append, lambda: None, self.playback.truth(1.0))
         self.panel.is_time = lambda: True
         self.now = 0.0
+        self.foreseen: tuple[Foreseen, ...] = ()
         self.plots = Plots(self.client.gui, clock=lambda: self.now)
         self.plots.begin(session.robot, session.recording.layout)
         self.comparison = Comparison(self.client)
@@ -58,7 +61,8 @@ class Desk:
         other = None
         if other_truth is not None and shown is not None:
             other = Other(other_truth, shown.row.tobytes(), shown.row.tobytes())
-        return Frame(truth, row, row, other=other)
+        foreseen, self.foreseen = self.foreseen, ()
+        return Frame(truth, row, row, other=other, foreseen=foreseen)
 
     @property
     def table(self) -> str:
@@ -140,6 +144,20 @@ def test_running_again_keeps_the_run_before_it():
     assert len(desk.comparison.kept.story) == 6  # of 100 ms
     desk.panel.run_again()
     assert not desk.panel.wants_kept  # A stays A
+
+
+def test_what_was_foreseen_stays_until_it_has_come_true():
+    desk = Desk(Beside(priority=1.0))
+    desk.playback.take(Foresee(PUSH))
+    while not desk.foreseen:
+        desk.foreseen = desk.playback.look_ahead(50)
+    desk.show()
+    paths = [desk.node("/foreseen/com"), desk.node("/beside/foreseen/com")]
+    desk.playback.take(ApplyPush(PUSH))
+    desk.play(1400)
+    assert not any(path.removed for path in paths)
+    desk.play(200)
+    assert all(path.removed for path in paths)
 
 
 def test_the_widgets_ask_for_plain_data():
