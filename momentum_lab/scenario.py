@@ -9,6 +9,7 @@ from typing import Annotated, Any, get_args
 
 import msgspec
 
+from momentum_lab.beside import Beside
 from momentum_lab.control.ground_sense import GROUND_SENSES, GroundSense
 from momentum_lab.control.motion import ANGULAR_GOALS, AngularGoal
 from momentum_lab.errors import InputError, ScenarioError
@@ -37,6 +38,7 @@ _CHOICES = {
     "course": get_args(Course),
 }
 _PARTS: dict[str, type[msgspec.Struct]] = {
+    "beside": Beside,
     "pushes": Push,
     "ground": Plate,
     "motions": PlateMotion,
@@ -82,6 +84,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         engine: which physics answers.
         seed: seed of everything random in the run; recorded, and so far nothing is random.
         timestep: length of a tick of control and physics, s.
+        beside: what a second robot beside the first does differently; None: there is none.
     """
 
     name: str
@@ -107,6 +110,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     engine: Engine = "pinocchio"
     seed: Annotated[int, msgspec.Meta(ge=0, le=MAX_SEED)] = 0
     timestep: Annotated[float, msgspec.Meta(ge=1e-4, le=2e-3)] = 1e-3
+    beside: Beside | None = None
 
 
 def scenario_names() -> list[str]:
@@ -138,6 +142,23 @@ def changed(scenario: Scenario, **changes: Any) -> Scenario:
         ScenarioError: a value is not allowed; the message names the field.
     """
     return _converted({**msgspec.to_builtins(scenario), **msgspec.to_builtins(changes)})
+
+
+def sides(scenario: Scenario) -> tuple[Scenario, ...]:
+    """The scenario of every robot in it: the first one's, and that of the robot beside it if there is one.
+
+    Both start at the same place, so that two robots without a difference move bit for bit alike.
+    """
+    beside, first = scenario.beside, msgspec.structs.replace(scenario, beside=None)
+    if beside is None:
+        return (first,)
+    same = beside.controller in (None, scenario.controller)
+    changes: dict[str, Any] = {"gains": {**(scenario.gains if same else {}), **beside.gains}}
+    if beside.controller is not None:
+        changes["controller"] = beside.controller
+    if beside.priority is not None:
+        changes["priority"] = beside.priority
+    return first, msgspec.structs.replace(first, **changes)
 
 
 def checked(scenario: Scenario) -> Scenario:

@@ -214,7 +214,8 @@ class Session:
 
     def resume(self, snapshot: Snapshot) -> None:
         """Go back to where the session was; what has been recorded, logged and posted since is forgotten."""
-        self.recording.forget_last(self._tick_of_run - snapshot.changing["_tick_of_run"])
+        # The snapshot may be another session's, and ahead of this one.
+        self.recording.forget_last(max(0, self._tick_of_run - snapshot.changing["_tick_of_run"]))
         for name, value in snapshot.changing.items():
             setattr(self, name, value)
         self.ticks = snapshot.ticks

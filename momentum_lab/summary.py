@@ -48,6 +48,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
         gains: all gains at the end of the run.
         seed: the scenario's.
         error: why the simulation broke down; None when it did not.
+        beside: the outcome of the robot beside the first; None when there is none.
     """
 
     robot: str
@@ -74,6 +75,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     gains: dict[str, float]
     seed: int
     error: str | None
+    beside: Summary | None = None
 
 
 def summarize(session: Session, timing: Timing) -> Summary:

@@ -273,6 +273,19 @@ def test_json_is_one_object_with_every_key(capsys: Output) -> None:
     assert summary["seconds"] == pytest.approx(0.05, abs=1e-12)
 
 
+def test_a_second_robot_is_in_the_summary_of_the_first(capsys: Output, tmp_path: Path) -> None:
+    out = str(tmp_path / "trace.npz")
+    assert main(["run", "fig7", "--seconds", "0.4", "--json", "--out", out]) == 0
+    output = capsys.readouterr()
+    summary = json.loads(output.out)
+    assert (summary["priority"], summary["beside"]["priority"]) == (0.0, 1.0)
+    assert summary["beside"]["peak_angular_momentum"] < summary["peak_angular_momentum"]
+    assert summary["beside"]["beside"] is None
+    assert f"{out} holds the first robot" in output.err
+    assert main(["run", "fig7", "--seconds", "0.02"]) == 0
+    assert "priority" in capsys.readouterr().out
+
+
 def test_without_json_the_result_is_for_people(capsys: Output, tmp_path: Path) -> None:
     path = tmp_path / "[trace]"
     assert main(["run", "push-forward", *SHORT, "--out", str(path)]) == 0

@@ -27,10 +27,11 @@ class PlateScene:
     Args:
         client: the browser tab.
         robot: whose feet they are under.
+        root: name of the node that everything hangs below; empty: the world.
     """
 
-    def __init__(self, client: viser.ClientHandle, robot: RobotModel) -> None:
-        self._client = client
+    def __init__(self, client: viser.ClientHandle, robot: RobotModel, root: str = "") -> None:
+        self._client, self._root = client, root
         self._sizes = [(sole.upper - sole.lower + 2.0 * _RIM).tolist() for sole in robot.soles]
         self._middles = [np.append((sole.lower + sole.upper) / 2.0, 0.0) for sole in robot.soles]
         self._boxes: list[Any] = []
@@ -73,7 +74,7 @@ class PlateScene:
         for i, (length, width) in enumerate(sizes):
             self._boxes.append(
                 self._client.scene.add_box(
-                    f"/plates/{i}",
+                    f"{self._root}/plates/{i}",
                     color=_SLIPPERY if friction[i] < _ICE else _FIRM,
                     dimensions=(length, width, _THICKNESS),
                     opacity=0.75,
