@@ -30,7 +30,7 @@ class RunPlayback(Playback):
 
     def __init__(self, run: Run, robot: RobotModel) -> None:
         self._staging: Staging | None = Staging(run)
-        super().__init__(run.for_robot(robot.spec.name), robot)
+        super().__init__(changed(run.for_robot(robot.spec.name), beside=None), robot)
 
     @property
     def over(self) -> bool:
@@ -189,7 +189,7 @@ class Classroom:
     def _try_out(self, stage: RunPlayback) -> None:
         """The start of a run without its pushes, for a hand to try."""
         scenario = stage.session.scenario
-        self.stage = Playback(changed(scenario, pushes=()), stage.session.robot)
+        self.stage = Playback(changed(scenario, pushes=(), beside=None), stage.session.robot)
         self._on_stage = ""
 
     def _branch(self, stage: RunPlayback) -> None:

@@ -23,7 +23,7 @@ from momentum_lab.errors import LabError
 from momentum_lab.lesson.record import LessonRecord
 
 _BACK, _LEAVE = "Back  (U)", "Leave the lesson"
-_NEXT, _SKIP, _FINISH = "Next  (N)", "Skip  (N)", "Finish  (N)"
+_NEXT, _SKIP, _FINISH = "Next  (I)", "Skip  (I)", "Finish  (I)"
 _END = 1e6  # behind the end of every run, s
 _BLUE = (0, 114, 178)
 
@@ -273,7 +273,7 @@ class LearnPanel:
         self._others.on_click(lambda event: self._back() if event.target.value == _BACK else self._leave())
 
     def _add_commands(self) -> None:
-        self._gui.add_command("Next step of the lesson", hotkey="N").on_trigger(lambda _: self._next())
+        self._gui.add_command("Next step of the lesson", hotkey="I").on_trigger(lambda _: self._next())
         self._gui.add_command("Previous step of the lesson", hotkey="U").on_trigger(lambda _: self._back())
 
     def _frame(self) -> None:

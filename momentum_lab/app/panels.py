@@ -18,6 +18,7 @@ from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robots import LoadedRobot
+from momentum_lab.app.runs_panel import RunsPanel
 from momentum_lab.app.status_bar import StatusBar
 from momentum_lab.app.tabs import Tabs
 from momentum_lab.app.view_panel import ViewPanel, ViewSettings
@@ -77,6 +78,8 @@ class Panels:
             self.control = ControlPanel(gui, post, choices, truth)
         with group.add_tab("View", viser.Icon.EYE):
             ViewPanel(gui, self.settings, look, redraw)
+        with group.add_tab("Runs", viser.Icon.VERSIONS):
+            self.runs = RunsPanel(gui, post, redraw, truth)
         left = gui.add_panel()
         # The browser opens the first tab.
         tabs = [
@@ -98,7 +101,7 @@ class Panels:
         self._gui, self._group, self._roomy = gui, group, roomy
         self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, self._lesson_opened, truth)
         self.learn.start(lesson)
-        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group))
+        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs)
 
     def begin_plots(self, robot: LoadedRobot) -> None:
         """Start with empty plots for a robot."""

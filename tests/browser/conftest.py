@@ -34,12 +34,13 @@ from pathlib import Path
 from momentum_lab.app.library import Library
 from momentum_lab.app.profile import PROFILES
 from momentum_lab.app.server import serve
-from momentum_lab.scenario import Scenario
+from momentum_lab.scenario import load_scenario
 if __name__ == "__main__":
-    profile, *lesson = sys.argv[1:]
+    profile, scenario, *lesson = sys.argv[1:]
     first = Path(lesson[0]) if lesson else None
     library = Library(first.parent) if first else None
-    serve(Scenario("stand"), port=0, open_browser=False, profile=PROFILES[profile], library=library, lesson=first)
+    start = load_scenario(scenario)
+    serve(start, port=0, open_browser=False, profile=PROFILES[profile], library=library, lesson=first)
 """
 
 
@@ -51,10 +52,12 @@ class Served:
     url: str
 
 
-def serve(folder: Path, profile: str, *lesson: Path) -> Iterator[Served]:
+def serve(folder: Path, profile: str, scenario: str = "stand", *lesson: Path) -> Iterator[Served]:
     script = folder / "lab.py"
     script.write_text(SERVE)
-    process = subprocess.Popen([sys.executable, script, profile, *lesson], stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, script, profile, scenario, *lesson], stdout=subprocess.PIPE, text=True
+    )
     try:
         yield Served(process, process.stdout.readline().split()[2])
         process.terminate()

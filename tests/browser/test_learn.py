@@ -24,13 +24,13 @@ FIRST = "1. What the ground can do"
 @pytest.fixture
 def served_with_errors(tmp_path: Path) -> Iterator[Served]:
     """A lesson with an error in it, opened from the command line."""
-    yield from serve(tmp_path, "test", written(tmp_path, ("STEPS = (", "STEPS = = (")))
+    yield from serve(tmp_path, "test", "stand", written(tmp_path, ("STEPS = (", "STEPS = = (")))
 
 
 @pytest.fixture
 def served_lesson(tmp_path: Path) -> Iterator[Served]:
     """A lesson, opened from the command line."""
-    yield from serve(tmp_path, "test", find_lesson("7"))
+    yield from serve(tmp_path, "test", "stand", find_lesson("7"))
 
 
 def test_a_whole_lesson_by_keyboard_and_mouse_and_after_a_reload(served: Served, open_page: Opener) -> None:
@@ -42,17 +42,17 @@ def test_a_whole_lesson_by_keyboard_and_mouse_and_after_a_reload(served: Served,
     at_step(lab, 1)
     lab.expect_text(r"simulated time 0\.00 s")
 
-    lab.press("n")
+    lab.press("i")
     at_step(lab, 2)
     expect(button(lab, "Predict first")).to_be_disabled()
     lab.press("p")
     lab.expect_text("this step of the lesson has no push")
-    lab.press("n")
+    lab.press("i")
     lab.page.wait_for_timeout(500)
     at_step(lab, 2)  # nothing comes before the prediction
     lab.click("A  Straight up, as before")
-    expect(button(lab, "Next (N)")).to_be_enabled(timeout=PATIENCE)
-    lab.press("n")
+    expect(button(lab, "Next (I)")).to_be_enabled(timeout=PATIENCE)
+    lab.press("i")
     at_step(lab, 3)
     lab.slide("I predict (N)", "ArrowLeft")
     lab.press(*["ArrowLeft"] * 34)  # from the middle of -200 to 200 N
@@ -61,24 +61,24 @@ def test_a_whole_lesson_by_keyboard_and_mouse_and_after_a_reload(served: Served,
     lab.expect_text("your prediction")
     lab.dismiss_notices()
     lab.save(OUTPUT / "learn_number_test.png")
-    lab.press("n")
+    lab.press("i")
     at_step(lab, 4)
     lab.expect_text(r"simulated time 0\.00 s")  # and nothing has moved
 
     lab.click("Play")
-    expect(button(lab, "Next (N)")).to_be_visible(timeout=PATIENCE)
+    expect(button(lab, "Next (I)")).to_be_visible(timeout=PATIENCE)
     lab.expect_text(r"simulated time 2\.00 s")
     lab.press("p")
     lab.expect_text("Last push")
     lab.save(OUTPUT / "learn_play_test.png")
-    lab.press("n")
+    lab.press("i")
     at_step(lab, 5)
     lab.expect_text("Otherwise")
     lab.expect_text("Close")
     lab.expect_text("runs that you have just seen")
     lab.save(OUTPUT / "learn_compare_test.png")
 
-    lab.press("n")
+    lab.press("i")
     at_step(lab, 6)
     lab.expect_text(r"at 0\.35 s: both sides differ by")
     before = equation(lab)
@@ -100,9 +100,9 @@ def test_a_whole_lesson_by_keyboard_and_mouse_and_after_a_reload(served: Served,
     lab.expect_text("You: A Straight up")
     lab.expect_text("played out of sight")
     for step in (6, 7, 8):
-        lab.press("n")
+        lab.press("i")
         at_step(lab, step)
-    lab.click("Finish (N)")
+    lab.click("Finish (I)")
     lab.expect_text("1 of [0-9]+ done")
     lab.save(OUTPUT / "learn_list_test.png")
     lab.expect_text("Push the robot")
@@ -133,11 +133,11 @@ def test_two_learners_do_not_disturb_each_other(served: Served, open_page: Opene
     open_list(other)
     other.click("7. A larger push")
     at_step(other, 1)
-    other.press("n")
+    other.press("i")
     at_step(other, 2)
     other.click("C  Only the one that bends")
-    expect(button(other, "Next (N)")).to_be_enabled(timeout=PATIENCE)
-    other.press("n")
+    expect(button(other, "Next (I)")).to_be_enabled(timeout=PATIENCE)
+    other.press("i")
     other.click("Play: bend")
     other.expect_text(r"simulated time 1\.80 s")
     at_step(one, 1)
@@ -162,7 +162,7 @@ def test_a_lesson_on_a_phone(served_lesson: Served, open_page: Opener) -> None:
     at_step(lab, 1)
     lab.dismiss_notices()
     lab.save(OUTPUT / "learn_phone_test.png")
-    lab.press("n")
+    lab.press("i")
     at_step(lab, 2)
     box = button(lab, "B  Only the one that stays upright").bounding_box()
     assert box is not None
