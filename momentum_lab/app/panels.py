@@ -11,6 +11,7 @@ from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.ground_panel import GroundPanel
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
+from momentum_lab.app.mismatch_panel import MismatchPanel
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.status_bar import StatusBar
@@ -63,6 +64,7 @@ class Panels:
             self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control", viser.Icon.ADJUSTMENTS):
             self.control = ControlPanel(gui, post, choices, truth)
+            self.mismatch = MismatchPanel(gui, post, truth)
         with group.add_tab("View", viser.Icon.EYE):
             ViewPanel(gui, self.settings, look, redraw)
         plots = gui.add_panel()

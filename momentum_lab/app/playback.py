@@ -30,6 +30,7 @@ from momentum_lab.events import (
     SetFriction,
     SetGain,
     SetGroundSense,
+    SetMismatch,
     SetMotion,
     SetPriority,
     SetSpeed,
@@ -37,6 +38,7 @@ from momentum_lab.events import (
     StopGround,
 )
 from momentum_lab.momentum.directions import directions, text_of
+from momentum_lab.physics.mismatch import EXACT, Mismatch, changes, with_error
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
 from momentum_lab.robot.catalog import load_spec
@@ -63,6 +65,7 @@ class Chosen:
     angular_goal: AngularGoal
     gains: dict[str, float]
     ground_sense: GroundSense = "told"
+    mismatch: Mismatch = EXACT
 
     def until(self, other: Chosen) -> list[SessionEvent]:
         """The events that lead from these choices to others."""
@@ -81,6 +84,7 @@ class Chosen:
             events.append(SetMotion(other.motion))
         if other.ground_sense != self.ground_sense:
             events.append(SetGroundSense(other.ground_sense))
+        events += [SetMismatch(*change) for change in changes(self.mismatch, other.mismatch)]
         if other.angular_goal != self.angular_goal:
             events.append(SetAngularGoal(other.angular_goal))
         return events + [SetGain(name, value) for name, value in other.gains.items() if value != gains[name]]
@@ -184,6 +188,7 @@ class Playback:
             uneven=not session.ground.is_floor,
             floor=float(session.ground.floor.origin[2]),
             ground_sense=chosen.ground_sense,
+            mismatch=chosen.mismatch,
             behind=self._behind * session.scenario.timestep,
         )
 
@@ -193,7 +198,7 @@ class Playback:
         priority, controlled = session.priority, text_of(session.controlled)
         motion, angular_goal = session.motion, session.angular_goal
         controller, planner, gains = session.controller, session.planner, _values(session.gains)
-        sense = session.ground_sense
+        sense, mismatch = session.ground_sense, session.mismatch
         for event in self._waiting:
             match event:
                 case SetPriority(value):
@@ -208,12 +213,14 @@ class Playback:
                     angular_goal = goal
                 case SetGroundSense(told_or_felt):
                     sense = told_or_felt
+                case SetMismatch(name, value):
+                    mismatch = with_error(mismatch, name, value)
                 case SetGain(name, value):
                     gains[name] = value
                 case SelectController(name):
                     controller, gains = name, _values(controller_entry(name).gains)
                     planner = planner if planner in controller_entry(name).planners else OWN
-        return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains, sense)
+        return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains, sense, mismatch)
 
     def _fall(self) -> Fallen | None:
         """The fall, unless it is still to come at the instant that is looked at."""
@@ -287,6 +294,7 @@ class Playback:
             motion=truth.motion if truth.motion in load_spec(name).motions else "",
             angular_goal=truth.angular_goal,
             gains=gains,
+            mismatch=truth.mismatch,
         )
 
     def _scenario(self, name: str) -> Scenario:

@@ -194,6 +194,7 @@ class Visitor:
         panels.status.follow(truth, status, sample.number("time"))
         panels.control.follow(truth)
         panels.ground.follow(truth)
+        panels.mismatch.follow(truth)
         panels.control.see(sample)
         if truth.fall is None:
             panels.push.see(sample)

@@ -8,6 +8,7 @@ import numpy as np
 from momentum_lab import events
 from momentum_lab.control.ground_sense import GroundSense
 from momentum_lab.control.motion import AngularGoal
+from momentum_lab.physics.mismatch import EXACT, Mismatch
 from momentum_lab.physics.push import Push
 
 
@@ -52,6 +53,7 @@ class Truth(msgspec.Struct, frozen=True):
         uneven: whether the ground under the feet is anything but the floor.
         floor: height of the floor under everything else, m.
         ground_sense: whether the robot is told how the ground moves.
+        mismatch: how the simulated robot differs from the one its controller believes in.
         behind: how long before the present end of the run the sample is that is looked at, s.
     """
 
@@ -77,6 +79,7 @@ class Truth(msgspec.Struct, frozen=True):
     uneven: bool = False
     floor: float = 0.0
     ground_sense: GroundSense = "told"
+    mismatch: Mismatch = EXACT
     behind: float = 0.0
 
 

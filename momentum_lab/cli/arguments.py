@@ -108,6 +108,13 @@ def _gain_setting(text: str) -> tuple[str, str]:
     return name, value
 
 
+def _mismatch_setting(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not (name and equals and value):
+        raise InputError("--mismatch", text, "NAME=VALUE, such as mass_error=0.1")
+    return name, value
+
+
 def _directions(text: str) -> str:
     try:
         directions(text)
@@ -270,6 +277,14 @@ def _choice_arguments(parser: _Parser) -> None:
         metavar="x",
         type=number("--friction", _ABOVE_ZERO, MAX_FRICTION, "Coulomb coefficient of the floor"),
         help="Coulomb coefficient of the floor",
+    )
+    parser.add_argument(
+        "--mismatch",
+        type=_mismatch_setting,
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="let the real robot differ from its model: mass_error=0.1, torque_delay_ms=2; may be repeated",
     )
 
 

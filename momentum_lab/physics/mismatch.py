@@ -38,7 +38,8 @@ class Mismatch(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         float, _error("ms", 0.0, 5.0, "How late the motors give the torque that is asked of them.")
     ] = 0.0
     encoder_noise: Annotated[
-        float, _error("rad", 0.0, 2e-3, "Noise of the measured joint angles; their speeds get a matching one.")
+        float,
+        _error("rad", 0.0, 2e-3, "Noise of the measured joint angles; their speeds get a matching one."),
     ] = 0.0
     imu_noise: Annotated[
         float, _error("rad", 0.0, 1e-2, "Noise of the measured orientation; its rate gets a matching one.")
@@ -79,7 +80,7 @@ def model_errors() -> dict[str, ModelError]:
     return {name: _declared(name, hints[name].__metadata__[0]) for name in Mismatch.__struct_fields__}
 
 
-def with_error(mismatch: Mismatch, name: str, value: float) -> Mismatch:
+def with_error(mismatch: Mismatch, name: str, value: float | str) -> Mismatch:
     """The same mismatch with one entry changed.
 
     Raises:
@@ -93,6 +94,12 @@ def with_error(mismatch: Mismatch, name: str, value: float) -> Mismatch:
         unit = "" if error.unit == "1" else f" {error.unit}"
         raise InputError(f"mismatch {name}", value, f"a number from {error.low:g} to {error.high:g}{unit}")
     return msgspec.structs.replace(mismatch, **{name: float(value)})
+
+
+def changes(before: Mismatch, after: Mismatch) -> list[tuple[str, float]]:
+    """Names and new values of the entries in which one mismatch differs from another."""
+    values = [(name, getattr(after, name)) for name in Mismatch.__struct_fields__]
+    return [(name, value) for name, value in values if value != getattr(before, name)]
 
 
 def real_robot(believed: RobotModel, mismatch: Mismatch) -> RobotModel:
