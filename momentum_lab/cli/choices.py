@@ -66,8 +66,9 @@ def _gains(settings: list[tuple[str, str]], controller: str | None, scenario: Sc
 def _mismatch(settings: list[tuple[str, str]], mismatch: Mismatch) -> Mismatch:
     """The scenario's mismatch with what was set."""
     for name, text in settings:
+        value = as_number(text)
         try:
-            mismatch = with_error(mismatch, name, as_number(text))
+            mismatch = with_error(mismatch, name, value)
         except InputError as error:
             unknown = error.argument == "mismatch"
             argument, given = ("--mismatch", name) if unknown else (f"--mismatch {name}", text)
