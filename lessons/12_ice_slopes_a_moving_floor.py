@@ -12,8 +12,8 @@ SLOPE = {"roll_deg": 10.0}
 RUNS = {
     "slope": lab.Run("stand", {"ground": (SLOPE,), "seconds": 1.0}),
     "icy": lab.Run("stand", {"ground": ({**SLOPE, "friction": 0.1},), "seconds": 1.5}),
-    "told": lab.Run("bus", {"seconds": 8.0}),
-    "felt": lab.Run("bus", {"seconds": 8.0, "ground_sense": "felt"}),
+    "told": lab.Run("bus", {"seconds": 5.0}),
+    "felt": lab.Run("bus", {"seconds": 5.0, "ground_sense": "felt"}),
 }
 
 
