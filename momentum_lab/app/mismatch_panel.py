@@ -8,7 +8,7 @@ from typing import Any
 import viser
 
 from momentum_lab.app import html
-from momentum_lab.app.widgets import Bound, Post, nice_step
+from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
 from momentum_lab.events import SetMismatch
 from momentum_lab.physics.mismatch import EXACT, ModelError, changes, model_errors
@@ -35,12 +35,26 @@ class MismatchPanel:
             }
             none = gui.add_button("No model errors", color="gray", icon=viser.Icon.RESTORE)
         none.on_click(lambda _: self._to_defaults())
+        # Outside the folder: seen when it is folded away, too.
+        self._present = gui.add_html("", visible=False)
+        self._text = ""
+        self._say(truth)
 
     def follow(self, truth: Truth) -> None:
         """Show the errors that are the case."""
         self._mismatch = truth.mismatch
         for name, slider in self._sliders.items():
             slider.follow(getattr(truth.mismatch, name))
+        self._say(truth)
+
+    def _say(self, truth: Truth) -> None:
+        """Which errors there are, in words."""
+        declared = model_errors()
+        present = [_in_words(declared[name], value) for name, value in changes(EXACT, truth.mismatch)]
+        text = html.sentence(f"Model errors: {', '.join(present)}.")
+        if text != self._text:
+            self._text = self._present.content = text
+            self._present.visible = bool(present)
 
     def _to_defaults(self) -> None:
         for name, value in changes(self._mismatch, EXACT):
@@ -48,13 +62,12 @@ class MismatchPanel:
 
 
 def _slider(gui: viser.GuiApi, error: ModelError, value: float) -> Any:
-    unit = "" if error.unit == "1" else error.unit
-    words = error.name.removesuffix("_ms").replace("_", " ")
+    unit, words = _unit(error), _words(error)
     return gui.add_slider(
         f"{words} ({unit})" if unit else words,
         error.low,
         error.high,
-        nice_step(error.low, error.high, error.default),
+        error.step,
         value,
         hint=f"{error.help} From {error.low:g} to {error.high:g} {unit}".strip()
         + f"; default {error.default:g}.",
@@ -63,3 +76,15 @@ def _slider(gui: viser.GuiApi, error: ModelError, value: float) -> Any:
 
 def _setter(name: str) -> Callable[[float], SetMismatch]:
     return lambda value: SetMismatch(name, value)
+
+
+def _words(error: ModelError) -> str:
+    return error.name.removesuffix("_ms").replace("_", " ")
+
+
+def _unit(error: ModelError) -> str:
+    return "" if error.unit == "1" else error.unit
+
+
+def _in_words(error: ModelError, value: float) -> str:
+    return f"{_words(error)} {value:g} {_unit(error)}".strip()

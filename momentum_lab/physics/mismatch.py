@@ -11,9 +11,9 @@ from momentum_lab.errors import InputError
 from momentum_lab.robot.model import RobotModel
 
 
-def _error(unit: str, low: float, high: float, help: str) -> msgspec.Meta:
-    """The declaration of one error: its unit ("1" for a ratio), its range, what it is in one sentence."""
-    return msgspec.Meta(ge=low, le=high, description=help, extra={"unit": unit})
+def _error(unit: str, low: float, high: float, step: float, help: str) -> msgspec.Meta:
+    """The declaration of one error: unit ("1" for a ratio), range, a slider's step, what it is in one sentence."""
+    return msgspec.Meta(ge=low, le=high, description=help, extra={"unit": unit, "step": step})
 
 
 class Mismatch(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -29,23 +29,30 @@ class Mismatch(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     mass_error: Annotated[
-        float, _error("1", -0.3, 0.3, "How much heavier every link really is than the controller believes.")
+        float,
+        _error("1", -0.3, 0.3, 0.01, "How much heavier every link really is than the controller believes."),
     ] = 0.0
     joint_friction: Annotated[
-        float, _error("1", 0.0, 0.1, "Coulomb friction of each joint, as a part of its motor's torque limit.")
+        float,
+        _error(
+            "1", 0.0, 0.1, 0.001, "Coulomb friction of each joint, as a part of its motor's torque limit."
+        ),
     ] = 0.0
     torque_delay_ms: Annotated[
-        float, _error("ms", 0.0, 5.0, "How late the motors give the torque that is asked of them.")
+        float, _error("ms", 0.0, 5.0, 1.0, "How late the motors give the torque that is asked of them.")
     ] = 0.0
     encoder_noise: Annotated[
         float,
-        _error("rad", 0.0, 2e-3, "Noise of the measured joint angles; their speeds get a matching one."),
+        _error(
+            "rad", 0.0, 2e-3, 1e-5, "Noise of the measured joint angles; their speeds get a matching one."
+        ),
     ] = 0.0
     imu_noise: Annotated[
-        float, _error("rad", 0.0, 1e-2, "Noise of the measured orientation; its rate gets a matching one.")
+        float,
+        _error("rad", 0.0, 1e-2, 1e-4, "Noise of the measured orientation; its rate gets a matching one."),
     ] = 0.0
     torque_scale: Annotated[
-        float, _error("1", 0.3, 1.0, "The part of their torque limits that the real motors can give.")
+        float, _error("1", 0.3, 1.0, 0.01, "The part of their torque limits that the real motors can give.")
     ] = 1.0
 
 
@@ -63,6 +70,7 @@ class ModelError:
         unit: its unit, "1" for a ratio.
         low: smallest allowed value.
         high: largest allowed value.
+        step: of a slider.
         help: what it is, in one sentence.
     """
 
@@ -71,6 +79,7 @@ class ModelError:
     unit: str
     low: float
     high: float
+    step: float
     help: str
 
 
@@ -112,4 +121,5 @@ def real_robot(believed: RobotModel, mismatch: Mismatch) -> RobotModel:
 
 
 def _declared(name: str, meta: Any) -> ModelError:
-    return ModelError(name, getattr(EXACT, name), meta.extra["unit"], meta.ge, meta.le, meta.description)
+    unit, step = meta.extra["unit"], meta.extra["step"]
+    return ModelError(name, getattr(EXACT, name), unit, meta.ge, meta.le, step, meta.description)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import msgspec
 import pytest
 
@@ -23,6 +25,10 @@ class Desk:
         words = name.removesuffix("_ms").replace("_", " ")
         return next(w for label, w in self.gui.widgets.items() if label.split(" (")[0] == words)
 
+    def said(self) -> list[str]:
+        """What is written below the folder, where it can be seen."""
+        return [re.sub("<[^>]*>", "", line.content) for line in self.gui.html[1:] if line.visible]
+
 
 @pytest.fixture
 def desk() -> Desk:
@@ -32,7 +38,8 @@ def desk() -> Desk:
 @pytest.mark.parametrize("error", model_errors().values(), ids=lambda error: error.name)
 def test_every_error_has_a_slider_with_its_range_unit_and_help(desk, error):
     slider = desk.slider(error.name)
-    assert (slider.min, slider.max, slider.value) == (error.low, error.high, error.default)
+    assert (slider.min, slider.max, slider.step) == (error.low, error.high, error.step)
+    assert slider.value == error.default
     assert error.help in slider.hint
     assert slider.label.endswith(f"({error.unit})") or error.unit == "1"
     slider.set_by_person(error.high)
@@ -43,8 +50,11 @@ def test_it_shows_what_is_the_case_and_takes_it_back(desk):
     desk.panel.follow(msgspec.structs.replace(desk.truth, mismatch=Mismatch(-0.1, imu_noise=1e-3)))
     assert desk.slider("mass_error").value == -0.1
     assert desk.slider("imu_noise").value == 1e-3
+    assert desk.said() == ["Model errors: mass error -0.1, imu noise 0.001 rad."]
     desk.gui.widgets["No model errors"].set_by_person(True)
     assert desk.posted == [SetMismatch("mass_error", 0.0), SetMismatch("imu_noise", 0.0)]
+    desk.panel.follow(desk.truth)
+    assert desk.said() == []
 
 
 def test_a_choice_while_looking_back_holds_for_the_branch():
