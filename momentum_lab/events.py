@@ -10,6 +10,7 @@ from typing import Literal
 
 import msgspec
 
+from momentum_lab.beside import Beside
 from momentum_lab.physics.plate import PlateMotion
 from momentum_lab.physics.push import Push
 
@@ -59,7 +60,10 @@ class SetFriction(msgspec.Struct, frozen=True, tag=True):
 
 
 class MoveGround(msgspec.Struct, frozen=True, tag=True):
-    """Let the plate under a foot begin a motion now; an empty name means all feet, as if on one plate."""
+    """Let the plate under a foot begin a motion now; an empty name means all feet, as if on one plate.
+
+    The motion's own start and stop are ignored.
+    """
 
     motion: PlateMotion
     foot: str = ""
@@ -143,6 +147,22 @@ class Branch(msgspec.Struct, frozen=True, tag=True):
     """Go on from the instant that is looked at, with the gains, priority and controller of now."""
 
 
+class SetBeside(msgspec.Struct, frozen=True, tag=True):
+    """Put a second robot beside the first, or change what it does differently; None: take it away."""
+
+    beside: Beside | None
+
+
+class RunAgain(msgspec.Struct, frozen=True, tag=True):
+    """Stand the robot up and push it again as it was pushed before, with the choices of now."""
+
+
+class Foresee(msgspec.Struct, frozen=True, tag=True):
+    """Try a push ahead of time on a copy of the session; the session itself is not pushed."""
+
+    push: Push
+
+
 SessionEvent = (
     SetGain
     | SetPriority
@@ -159,7 +179,19 @@ SessionEvent = (
     | ApplyPush
     | Reset
 )
-PlaybackEvent = Play | Pause | StepOnce | SetSpeed | SelectRobot | LoadScenario | LookBack | Branch
+PlaybackEvent = (
+    Play
+    | Pause
+    | StepOnce
+    | SetSpeed
+    | SelectRobot
+    | LoadScenario
+    | LookBack
+    | Branch
+    | SetBeside
+    | RunAgain
+    | Foresee
+)
 Event = SessionEvent | PlaybackEvent
 
 

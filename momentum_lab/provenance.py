@@ -8,6 +8,7 @@ from typing import Any
 import msgspec
 
 from momentum_lab import __version__
+from momentum_lab.physics.engines import Engine
 from momentum_lab.session import Session
 
 _LIBRARIES = ("pin", "numpy", "placo", "daqp", "scipy", "example-robot-data")
@@ -22,7 +23,7 @@ def provenance(session: Session) -> dict[str, Any]:
     """
     robot = session.robot
     return {
-        "versions": versions(),
+        "versions": {**versions(), **_engine_version(session.scenario.engine)},
         "scenario": msgspec.to_builtins(session.scenario),
         "controller": session.controller,
         "gains": msgspec.to_builtins(session.gains),
@@ -41,6 +42,11 @@ def provenance(session: Session) -> dict[str, Any]:
             },
         },
     }
+
+
+def _engine_version(engine: Engine) -> dict[str, str]:
+    """Of the physics, where it is not the lab's own."""
+    return {} if engine == "pinocchio" else {engine: metadata.version(engine)}
 
 
 def versions() -> dict[str, str]:

@@ -5,15 +5,18 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, get_args
 
 import msgspec
 
+from momentum_lab.beside import Beside
 from momentum_lab.control.ground_sense import GROUND_SENSES, GroundSense
 from momentum_lab.control.motion import ANGULAR_GOALS, AngularGoal
 from momentum_lab.errors import InputError, ScenarioError
 from momentum_lab.momentum.directions import directions
 from momentum_lab.paths import ASSETS
+from momentum_lab.physics.engines import Engine
+from momentum_lab.physics.ground import check_motion
 from momentum_lab.physics.mismatch import Mismatch
 from momentum_lab.physics.plate import AXES, Course, Friction, FrictionChange, Plate, PlateMotion
 from momentum_lab.physics.push import Push, Shape
@@ -24,8 +27,8 @@ MAX_SECONDS = 3600.0
 MAX_SEED = 2**32 - 1
 MAX_DISTANCE = 1000.0
 MAX_LEAN = 0.1
-MAX_DROP = 2.0
-ENGINES = ("pinocchio",)
+MAX_DROP = 3.0
+ENGINES = get_args(Engine)
 
 _CHOICES = {
     "engine": ENGINES,
@@ -36,6 +39,7 @@ _CHOICES = {
     "course": get_args(Course),
 }
 _PARTS: dict[str, type[msgspec.Struct]] = {
+    "beside": Beside,
     "pushes": Push,
     "ground": Plate,
     "motions": PlateMotion,
@@ -83,6 +87,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         mismatch: how the simulated robot differs from the one its controller believes in.
         seed: seed of everything random in the run: the noise of sensors.
         timestep: length of a tick of control and physics, s.
+        beside: what a second robot beside the first does differently; None: there is none.
     """
 
     name: str
@@ -106,9 +111,10 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     position: tuple[Coordinate, Coordinate] = (0.0, 0.0)
     heading_deg: Annotated[float, msgspec.Meta(ge=-360.0, le=360.0)] = 0.0
     mismatch: Mismatch = Mismatch()
-    engine: Literal["pinocchio"] = "pinocchio"
+    engine: Engine = "pinocchio"
     seed: Annotated[int, msgspec.Meta(ge=0, le=MAX_SEED)] = 0
     timestep: Annotated[float, msgspec.Meta(ge=1e-4, le=2e-3)] = 1e-3
+    beside: Beside | None = None
 
 
 def scenario_names() -> list[str]:
@@ -142,6 +148,23 @@ def changed(scenario: Scenario, **changes: Any) -> Scenario:
     return _converted({**msgspec.to_builtins(scenario), **msgspec.to_builtins(changes)})
 
 
+def sides(scenario: Scenario) -> tuple[Scenario, ...]:
+    """The scenario of every robot in it: the first one's, and that of the robot beside it if there is one.
+
+    Both start at the same place, so that two robots without a difference move bit for bit alike.
+    """
+    beside, first = scenario.beside, msgspec.structs.replace(scenario, beside=None)
+    if beside is None:
+        return (first,)
+    same = beside.controller in (None, scenario.controller)
+    changes: dict[str, Any] = {"gains": {**(scenario.gains if same else {}), **beside.gains}}
+    if beside.controller is not None:
+        changes["controller"] = beside.controller
+    if beside.priority is not None:
+        changes["priority"] = beside.priority
+    return first, msgspec.structs.replace(first, **changes)
+
+
 def checked(scenario: Scenario) -> Scenario:
     """The scenario, if every number in it is finite.
 
@@ -162,11 +185,26 @@ def _converted(data: dict[str, Any], where: str = "") -> Scenario:
         field = place.strip("`").removeprefix("$").removeprefix(".").removesuffix("[...]")
         given, allowed = _explained(rule, field, data)
         raise ScenarioError((field or "scenario") + where, given, allowed) from error
+    _check_plates(scenario, where)
     try:
         directions(scenario.controlled)
     except InputError as error:
         raise ScenarioError("controlled" + where, scenario.controlled, error.allowed) from error
     return scenario
+
+
+def _check_plates(scenario: Scenario, where: str) -> None:
+    """Refuse a motion of the ground that is too fast or goes too far, with its place."""
+    for i, plate in enumerate(scenario.ground):
+        for j, motion in enumerate(plate.motions):
+            _check_motion(motion, f"ground[{i}].motions[{j}].", where)
+
+
+def _check_motion(motion: PlateMotion, place: str, where: str) -> None:
+    try:
+        check_motion(motion)
+    except InputError as error:
+        raise ScenarioError(place + error.argument + where, error.given, error.allowed) from error
 
 
 def _explained(rule: str, field: str, data: Any) -> tuple[object, str]:

@@ -14,7 +14,7 @@ import pinocchio as pin
 from momentum_lab.control.controller import Controller, ControlOutput
 from momentum_lab.control.fallback import limp
 from momentum_lab.control.gains import with_gains
-from momentum_lab.control.ground_sense import GroundSense, ground_sense, sensed
+from momentum_lab.control.ground_sense import GroundSense, felt_ground, ground_sense
 from momentum_lab.control.handover import Handover
 from momentum_lab.control.motion import AngularGoal, MovingGoal, reach_of
 from momentum_lab.control.planner import OWN
@@ -41,13 +41,15 @@ from momentum_lab.events import (
 )
 from momentum_lab.momentum.directions import Directions, directions
 from momentum_lab.momentum.foot_ground import FootGround
+from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.observe import Tick, observe
+from momentum_lab.physics.engines import check_ground, check_mismatch, world
 from momentum_lab.physics.ground import Ground, checked_friction
 from momentum_lab.physics.mismatch import EXACT, Mismatch, real_robot, with_error
 from momentum_lab.physics.motors import Line, delayed, ticks_late
 from momentum_lab.physics.push import Push
 from momentum_lab.physics.sensors import measured
-from momentum_lab.physics.simulator import Simulator, Step
+from momentum_lab.physics.simulator import Step
 from momentum_lab.recording import Layout, Recording, Sample
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.posture import standing_posture
@@ -57,6 +59,8 @@ from momentum_lab.terrain import standing_places, start_of, terrain
 
 # A robot whose CoM is lower than this part of its standing height has fallen.
 _FALLEN_HEIGHT = 0.6
+# The force sensor of a foot feels the ground from this part of the weight on.
+_FELT = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +118,8 @@ class Session:
     last_failure: str | None
     _scripted: tuple[Push, ...]
     _ground: Ground
+    _known: FootGround
+    _foot_wrench: np.ndarray
     _motion: MovingGoal | None
     _motion_start: float
     _controller: Controller
@@ -130,7 +136,8 @@ class Session:
         self.scenario = scenario
         self.robot = robot or RobotModel.named(scenario.robot)
         self.stance = _stance(self.robot, scenario.stance)
-        self._ground = self._first_ground = terrain(scenario, self.robot)
+        self._weight = self.robot.mass * GRAVITY
+        self._ground = self._first_ground = terrain(scenario, self.robot, self.stance)
         self._start = _lifted(
             _starting_state(self.robot, scenario, scenario.com_outside), scenario.drop_height
         )
@@ -144,6 +151,7 @@ class Session:
         self.priority = scenario.priority
         self.ground_sense = scenario.ground_sense
         self.mismatch = scenario.mismatch
+        check_mismatch(scenario.engine, scenario.mismatch)
         self.controlled = directions(scenario.controlled)
         self.log: list[LoggedEvent] = []
         self.ticks = 0
@@ -176,7 +184,7 @@ class Session:
     @property
     def motion_reach(self) -> np.ndarray:
         """How far the present motion moves each joint (na,), rad; zeros without one."""
-        return np.zeros(self.robot.na) if self._motion is None else self._motion.reach
+        return np.zeros(self.robot.na) if self._motion is None else self._motion.reach.sum(axis=0)
 
     def angular_momentum_asked(self, time: float) -> np.ndarray:
         """k_d of the present motion at a time of the run, s (3,), N m s; zeros without one."""
@@ -215,7 +223,8 @@ class Session:
 
     def resume(self, snapshot: Snapshot) -> None:
         """Go back to where the session was; what has been recorded, logged and posted since is forgotten."""
-        self.recording.forget_last(self._tick_of_run - snapshot.changing["_tick_of_run"])
+        # The snapshot may be another session's, and ahead of this one.
+        self.recording.forget_last(max(0, self._tick_of_run - snapshot.changing["_tick_of_run"]))
         for name, value in snapshot.changing.items():
             setattr(self, name, value)
         self.ticks = snapshot.ticks
@@ -240,8 +249,8 @@ class Session:
         """The controller's answer; a robot that has fallen goes limp."""
         if self.fall is not None:
             return limp(self.robot, dynamics, self._memory)
-        known = sensed(self.ground_sense, dynamics, plates)
-        reference = self._goal.reference(dynamics, known, self.controlled, self.planner)
+        self._known = self._sensed(dynamics, plates)
+        reference = self._goal.reference(dynamics, self._known, self.controlled, self.planner)
         if self._motion is not None:
             reference = self._motion.applied(reference, self.time - self._motion_start)
         output = self._controller.compute(dynamics, reference, self.gains, self.priority, self._memory)
@@ -250,6 +259,12 @@ class Session:
             self.last_failure = output.failure
         torque = self._without_jump(output.torque)
         return output if torque is output.torque else replace(output, torque=torque)
+
+    def _sensed(self, dynamics: Dynamics, plates: FootGround) -> FootGround:
+        """The ground as the robot takes it to be: as it is told, or as its soles feel it."""
+        if self.ground_sense == "told":
+            return plates
+        return felt_ground(dynamics, self._foot_wrench[:, 2] > _FELT * self._weight, self._known)
 
     def _move(self, name: str, angular_goal: AngularGoal, start: float) -> None:
         """Let a motion begin at a time of the run, s, or end it; what the torque jumps by is faded."""
@@ -288,6 +303,7 @@ class Session:
     def _advance(self, output: ControlOutput, step: Step) -> None:
         self._memory = output.memory
         self._torque = step.torque
+        self._foot_wrench = step.foot_wrench
         self.state = step.state
         self.ticks += 1
         self._tick_of_run += 1
@@ -320,11 +336,12 @@ class Session:
                 self._feet_named(foot)
                 checked_friction(value)
             case MoveGround(motion, foot):
-                self._ground.moving_too(self._feet_named(foot), motion)
+                ground = self._ground.moving_too(self._feet_named(foot), motion)
+                check_ground(self.scenario.engine, ground)
             case SetGroundSense(sense):
                 ground_sense(sense)
             case SetMismatch(name, value):
-                with_error(self.mismatch, name, value)
+                check_mismatch(self.scenario.engine, with_error(self.mismatch, name, value))
             case SelectController(name):
                 controller_entry(name)
             case ApplyPush(push):
@@ -390,7 +407,7 @@ class Session:
         """The robot that is simulated and its world, out of what is the case."""
         self._real = real_robot(self.robot, self.mismatch)
         self._ticks_late = ticks_late(self.mismatch.torque_delay_ms, self.scenario.timestep)
-        self._simulator = Simulator(self._real, self._ground, self.scenario.timestep)
+        self._simulator = world(self.scenario.engine, self._real, self._ground, self.scenario.timestep)
 
     def _select(self, name: str) -> None:
         entry = controller_entry(name)
@@ -409,6 +426,8 @@ class Session:
         self.last_failure = None
         self._tick_of_run, self._motion_start = 0, 0.0
         self._ground = self._first_ground
+        self._known = self._ground.at(0.0)
+        self._foot_wrench = np.zeros((len(self.robot.soles), 6))
         self._line = ()
         self._build()
         self._memory = self._controller.initial_memory(self._believed(self.dynamics))

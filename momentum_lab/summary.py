@@ -48,6 +48,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
         gains: all gains at the end of the run.
         seed: the scenario's.
         error: why the simulation broke down; None when it did not.
+        beside: the outcome of the robot beside the first; None when there is none.
     """
 
     robot: str
@@ -74,6 +75,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     gains: dict[str, float]
     seed: int
     error: str | None
+    beside: Summary | None = None
 
 
 def summarize(session: Session, timing: Timing) -> Summary:
@@ -122,8 +124,10 @@ def _fall(session: Session, timing: Timing) -> tuple[bool, float | None, str | N
 
 
 def _com_speed(session: Session) -> float:
-    """Speed of the CoM at the last sample, m/s."""
-    return float(np.linalg.norm(session.recording.latest["com_velocity"]))
+    """Speed of the CoM against the ground under the feet at the last sample, m/s."""
+    ground = session.ground.at(session.recording.latest.number("time"))
+    moving = ground.velocity[list(session.stance), :3].mean(axis=0)
+    return float(np.linalg.norm(session.recording.latest["com_velocity"] - moving))
 
 
 def _impulse_ratio(session: Session, push: Push) -> float:
@@ -138,7 +142,7 @@ def _impulse_ratio(session: Session, push: Push) -> float:
         return 0.0
     com = recording.column("com")[row]
     poses = recording.column("sole_pose")[row]
-    polygon = support_polygon(_corners_in_world(session, poses)[stance].reshape(-1, 3))
+    polygon = support_polygon(corners_in_world(session, poses)[stance].reshape(-1, 3))
     distance = distance_to_edge(com[:2], push.direction[:2], polygon)
     omega = pendulum_frequency(float(com[2] - poses[stance, 2].min()))
     bound = pendulum_impulse_bound(session.robot.mass, omega, distance, elapsed)
@@ -146,7 +150,9 @@ def _impulse_ratio(session: Session, push: Push) -> float:
 
 
 def _peak_com_excursion(session: Session) -> float:
-    com = session.recording.column("com")[:, :2]
+    """How far the CoM gets from where it was over the ground, which may move, m."""
+    ground = session.recording.column("ground_pose")[:, list(session.stance), :2].mean(axis=1)
+    com = session.recording.column("com")[:, :2] - (ground - ground[0])
     return _largest(np.linalg.norm(com - com[0], axis=1))
 
 
@@ -155,7 +161,7 @@ def _min_cop_margin(session: Session, until: float) -> float | None:
     recording = session.recording
     standing = recording.column("time") < until
     pressed = recording.column("foot_wrench_measured")[standing, :, 2] > _LEAST_SUPPORT
-    corners = _corners_in_world(session, recording.column("sole_pose")[standing])
+    corners = corners_in_world(session, recording.column("sole_pose")[standing])
     cops = recording.column("cop_measured")[standing]
     margins = [
         support_margin(cop, support_polygon(points[feet].reshape(-1, 3)))
@@ -165,7 +171,7 @@ def _min_cop_margin(session: Session, until: float) -> float | None:
     return min(margins, default=None)
 
 
-def _corners_in_world(session: Session, poses: np.ndarray) -> np.ndarray:
+def corners_in_world(session: Session, poses: np.ndarray) -> np.ndarray:
     """Corners of the soles (..., F, 4, 3) at sole poses (..., F, 7), m.
 
     x = p + 2 w (u x c) + 2 u x (u x c) + c for a corner c and the quaternion (u, w).

@@ -11,6 +11,22 @@ from momentum_lab.session import Session, Snapshot
 _EVERY = 20
 
 
+def fork(session: Session, capacity: int) -> Session:
+    """Another session that is where this one is and goes on by itself; its inbox is empty.
+
+    Its recording begins with the last sample of this one, if there is one.
+
+    Args:
+        session: between two ticks.
+        capacity: ticks that the new recording keeps.
+    """
+    other = Session(session.scenario, session.robot, capacity)
+    other.resume(session.snapshot())
+    if len(session.recording):
+        other.recording.next_row()[:] = session.recording.latest.row
+    return other
+
+
 class Timeline:
     """Snapshots of a session while it runs, as far back as its recording reaches.
 

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
+import tempfile
 import warnings
+from collections.abc import Generator
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,8 +24,26 @@ from momentum_lab.robot.state import Dynamics, State
 # Matrices of this size are done before a second thread has woken up; two of them only get in each other's way.
 threadpoolctl.threadpool_limits(1, user_api="blas")
 
+# Tests run in two processes; whoever measures time waits for the other one, and lets it wait.
+_LOCKS = Path(tempfile.gettempdir())
+
 ROBOTS = ("talos", "g1")
 STATES_PER_ROBOT = 50
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
+    """The machine, shared with the tests of the other process; alone for a test that is marked `quiet`."""
+    run = getattr(item.config, "workerinput", {}).get("testrunuid")
+    if run is None:
+        return (yield)
+    alone = item.get_closest_marker("quiet") is not None
+    gate, room = (_LOCKS / f"momentum-lab-{run}.{name}" for name in ("gate", "room"))
+    with gate.open("w") as entering, room.open("w") as inside:
+        fcntl.flock(entering, fcntl.LOCK_EX)  # nobody overtakes one that waits to be alone
+        fcntl.flock(inside, fcntl.LOCK_EX if alone else fcntl.LOCK_SH)
+        fcntl.flock(entering, fcntl.LOCK_UN)
+        return (yield)
 
 
 @pytest.fixture(scope="session")

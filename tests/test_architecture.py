@@ -22,6 +22,7 @@ FLOORS: tuple[frozenset[str], ...] = (
     frozenset({"control", "physics"}),
     frozenset(
         {
+            "beside",
             "scenario",
             "share_code",
             "events",

@@ -20,6 +20,8 @@ from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
 from tests.conftest import assert_close
 
+pytestmark = pytest.mark.quiet
+
 TICKS = 60
 # Calls of functions in a tick of the standing robot, Python and C; the tick's time grows with them.
 MOST_CALLS_PER_TICK = 160

@@ -21,6 +21,7 @@ from rich.console import Console
 from threadpoolctl import threadpool_info
 
 from momentum_lab.app.figures import AppMeasurement
+from momentum_lab.cli import limit as limit_command
 from momentum_lab.cli import listing, main, progress
 from momentum_lab.cli import run as run_command
 from momentum_lab.cli.arguments import parsed
@@ -29,6 +30,7 @@ from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import SimulationError
 from momentum_lab.experiments.figures import FIGURES
+from momentum_lab.experiments.push_limit import PushLimit
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import load_trace
 from momentum_lab.robot.catalog import robot_names
@@ -98,7 +100,15 @@ BAD_VALUES = [
         "run stand --controlled up",
         "--controlled: got up; allowed: all, linear, angular, none, lx, ly, lz, kx, ky, kz, several joined by +",
     ),
-    ("run stand --engine mujoco", "--engine: got mujoco; allowed: one of pinocchio"),
+    ("run stand --engine bullet", "--engine: got bullet; allowed: one of pinocchio, mujoco"),
+    (
+        "limit --direction up",
+        "--direction: got up; allowed: forward, left, backward, right, all, or a number from -360 to 360 (degrees)",
+    ),
+    (
+        "limit fig7 --push-duration 4",
+        "--push-duration: got 4; allowed: less than 2.3 s, when fig7 ends",
+    ),
     ("run stand --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
     (
         "run stand --set linear_damping",
@@ -128,7 +138,10 @@ BAD_VALUES = [
         "list: got cats; allowed: robots, controllers, planners, scenarios, lessons, figures, gains",
     ),
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
-    ("fly", "command: got fly; allowed: app, run, lesson, figure, list, equations, bench"),
+    (
+        "fly",
+        "command: got fly; allowed: app, run, limit, lesson, figure, list, equations, robot-check, bench",
+    ),
 ]
 
 
@@ -146,10 +159,10 @@ def test_bad_value_is_one_line_that_names_it(words: str, message: str, capsys: O
             "app --scenario nope",
             "--scenario: got nope; allowed: one of arm-swing, board, boat, bus, ",
         ),
-        ("app --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
-        ("equations --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
-        ("run stand --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
-        ("run stand --robot /", "--robot: got /; allowed: one of g1, icub, "),
+        ("app --robot nope", "--robot: got nope; allowed: one of g1, human, icub, "),
+        ("equations --robot nope", "--robot: got nope; allowed: one of g1, human, icub, "),
+        ("run stand --robot nope", "--robot: got nope; allowed: one of g1, human, icub, "),
+        ("run stand --robot /", "--robot: got /; allowed: one of g1, human, icub, "),
         ("run stand --set magic=1", "--set: got magic; allowed: one of linear_damping, "),
         ("run stand --pusch 3", "argument: got --pusch; allowed: run SCENARIO; options: --help, --robot, "),
         ("run stand --see 3", "argument: got --see; allowed: run SCENARIO; options: --help, --robot, "),
@@ -260,6 +273,19 @@ def test_json_is_one_object_with_every_key(capsys: Output) -> None:
     assert summary["seconds"] == pytest.approx(0.05, abs=1e-12)
 
 
+def test_a_second_robot_is_in_the_summary_of_the_first(capsys: Output, tmp_path: Path) -> None:
+    out = str(tmp_path / "trace.npz")
+    assert main(["run", "fig7", "--seconds", "0.4", "--json", "--out", out]) == 0
+    output = capsys.readouterr()
+    summary = json.loads(output.out)
+    assert (summary["priority"], summary["beside"]["priority"]) == (0.0, 1.0)
+    assert summary["beside"]["peak_angular_momentum"] < summary["peak_angular_momentum"]
+    assert summary["beside"]["beside"] is None
+    assert f"{out} holds the first robot" in output.err
+    assert main(["run", "fig7", "--seconds", "0.02"]) == 0
+    assert "priority" in capsys.readouterr().out
+
+
 def test_without_json_the_result_is_for_people(capsys: Output, tmp_path: Path) -> None:
     path = tmp_path / "[trace]"
     assert main(["run", "push-forward", *SHORT, "--out", str(path)]) == 0
@@ -367,6 +393,98 @@ def test_recording_larger_than_memory_is_one_line(capsys: Output, monkeypatch: p
     monkeypatch.setattr(run_command, "Session", greedy)
     message = refusal(capsys, "run", "stand", "--seconds", "3600")
     assert message == "--seconds: got 3600.0; allowed: a run whose recording fits into memory"
+
+
+def test_mujoco_answers_and_says_so_in_summary_and_trace(tmp_path: Path, capsys: Output) -> None:
+    path = tmp_path / "trace.npz"
+    assert main(["run", "stand", *SHORT, "--engine", "mujoco", "--json", "--out", str(path)]) == 0
+    assert json.loads(capsys.readouterr().out)["engine"] == "mujoco"
+    meta = load_trace(path).meta
+    assert meta["scenario"]["engine"] == "mujoco"
+    assert meta["versions"]["mujoco"][0].isdigit()
+
+
+@pytest.mark.parametrize("command", ["run stand", "limit"])
+def test_without_mujoco_one_line_says_what_to_install(
+    command: str, capsys: Output, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    assert refusal(capsys, *command.split(), "--engine", "mujoco") == (
+        "--engine: got mujoco, which is not installed; "
+        "allowed: pinocchio, or first: pip install 'momentum-lab[mujoco]'"
+    )
+
+
+# limit
+
+
+@pytest.fixture
+def searched(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Scenario, Push]]:
+    """The searches that were asked for, each with a made-up answer."""
+    asked: list[tuple[Scenario, Push]] = []
+
+    def search(scenario: Scenario, robot: Any, push: Push, proceed: Callable[[float], bool]) -> PushLimit:
+        assert proceed(0.5)
+        asked.append((scenario, push))
+        return PushLimit(
+            direction_deg=push.direction_deg,
+            force=100.0,
+            impulse=100.0 * push.duration,
+            impulse_ratio=1.25,
+            beyond=101.0,
+            why="fell at 1.00 s: it was pushed",
+            signs=("left foot off the ground at 0.70 s",),
+            trials=9,
+        )
+
+    monkeypatch.setattr(limit_command, "push_limit", search)
+    return asked
+
+
+@pytest.mark.parametrize(
+    ("words", "degrees"),
+    [
+        ("", [0.0]),
+        ("--direction left", [90.0]),
+        ("--direction backward", [180.0]),
+        ("--direction right", [270.0]),
+        ("--direction -30", [-30.0]),
+        ("--direction all", [0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0]),
+    ],
+)
+def test_limit_is_searched_in_the_direction_that_was_asked(
+    words: str, degrees: list[float], searched: list[tuple[Scenario, Push]], capsys: Output
+) -> None:
+    assert main(["limit", "--robot", "g1", *words.split(), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert [push.direction_deg for _, push in searched] == degrees
+    assert [found["direction_deg"] for found in answer["limits"]] == degrees
+    assert (answer["robot"], answer["engine"], answer["push_duration"]) == ("g1", "pinocchio", 0.1)
+    assert answer["limits"][0]["force"] == 100.0
+    assert answer["limits"][0]["impulse_ratio"] == 1.25
+
+
+def test_options_of_limit_reach_the_search(searched: list[tuple[Scenario, Push]], capsys: Output) -> None:
+    words = "limit fig7 --robot g1 --controller slack-qp --engine mujoco --push-duration 0.2 --priority 0.5"
+    assert main([*words.split(), "--seconds", "3"]) == 0
+    ((scenario, push),) = searched
+    assert (scenario.name, scenario.robot, scenario.controller) == ("fig7", "g1", "slack-qp")
+    assert (scenario.engine, scenario.priority, scenario.seconds) == ("mujoco", 0.5, 3.0)
+    assert (push.duration, push.start) == (0.2, load_scenario("fig7").pushes[0].start)
+    printed = " ".join(capsys.readouterr().out.split())
+    for text in ("0 forward", "100 N", "20.0 N s", "1.25", "101 N:", "left foot off"):
+        assert text in printed
+
+
+def test_ctrl_c_ends_a_search(
+    searched: list[tuple[Scenario, Push]], monkeypatch: pytest.MonkeyPatch, capsys: Output
+) -> None:
+    def stopped(*_: Any) -> PushLimit:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(limit_command, "push_limit", stopped)
+    assert main(["limit", "--robot", "g1"]) == 130
+    assert capsys.readouterr().out == ""
 
 
 # list

@@ -218,7 +218,7 @@ BROKEN = [
     ("unknown symbol", ("dl_x = f_x", "dl_x = f_y"), "equation=lab", "got symbol f_y"),
     ("return outside", ("RUNS =", "return\nRUNS ="), "return", r"Python \('return' outside function"),
     ("leaves", ("RUNS =", "exit()\nRUNS ="), "exit()", "got SystemExit"),
-    ("unknown robot", ("RUNS =", 'ROBOTS = ("tallos",)\nRUNS ='), "ROBOTS", "a tuple of g1, icub, romeo, talos"),
+    ("unknown robot", ("RUNS =", 'ROBOTS = ("tallos",)\nRUNS ='), "ROBOTS", "a tuple of g1, human, icub"),
     ("wrong import", ("import com_moved", "import com_mooved"), "import com_mooved", "got ImportError"),
     ("no question", ("\n\nYou push a robot from behind. Where does it stop?\n", ""), "Leaning in", "got no question"),
 ]  # fmt: skip

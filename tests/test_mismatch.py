@@ -181,6 +181,31 @@ def test_a_scenario_carries_its_errors(tmp_path):
     assert msgspec.json.decode(b'{"name": "x"}', type=Scenario).mismatch == EXACT
 
 
+# The other engine
+
+
+def test_mujoco_has_the_heavier_robot_too(talos):
+    """What the feet carry is 1.1 m g and what the CoM gains, and Eq. 20 holds with the heavier robot."""
+    pytest.importorskip("mujoco")
+    session, _ = spied(talos, Mismatch(mass_error=0.1, torque_delay_ms=1.0), 800, engine="mujoco")
+    column = session.recording.column
+    carried = column("foot_wrench_measured")[:-1, :, 2].sum(axis=1).mean()
+    gained = (column("momentum")[-1, 2] - column("momentum")[0, 2]) / 0.799
+    assert carried - gained == pytest.approx(1.1 * talos.mass * G, rel=1e-3)
+    assert column("equation_residual").max() < 1e-6
+    assert session.fall is None
+
+
+def test_mujoco_refuses_friction_of_joints_before_it_acts(talos):
+    pytest.importorskip("mujoco")
+    said = r"^mismatch joint_friction: got 0\.05; allowed: 0 with the engine mujoco$"
+    with pytest.raises(InputError, match=said):
+        spied(talos, Mismatch(joint_friction=0.05), engine="mujoco")
+    session, _ = spied(talos, EXACT, engine="mujoco")
+    with pytest.raises(InputError, match=said):
+        session.post(SetMismatch("joint_friction", 0.05))
+
+
 # Who stands
 
 

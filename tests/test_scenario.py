@@ -11,7 +11,15 @@ from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import ScenarioError
 from momentum_lab.physics.push import Push
 from momentum_lab.robot.catalog import robot_names
-from momentum_lab.scenario import MAX_SECONDS, Scenario, changed, checked, load_scenario, scenario_names
+from momentum_lab.scenario import (
+    MAX_SECONDS,
+    Scenario,
+    changed,
+    checked,
+    load_scenario,
+    scenario_names,
+    sides,
+)
 
 BUSY = Scenario(
     name="busy",
@@ -106,7 +114,7 @@ def test_changed_changes_only_what_it_is_told() -> None:
         ({"seconds": math.nan}, "seconds: got nan; allowed: a finite number"),
         ({"priority": math.inf}, "priority: got inf; allowed: a finite number"),
         ({"priority": 1.5}, "priority: got 1.5; allowed: number <= 1.0"),
-        ({"engine": "mujoco"}, "engine: got mujoco; allowed: one of pinocchio"),
+        ({"engine": "bullet"}, "engine: got bullet; allowed: one of pinocchio, mujoco"),
         ({"seed": 1.5}, "seed: got 1.5; allowed: whole number"),
         ({"friction": 0.0}, "friction: got 0.0; allowed: number > 0.0"),
         ({"position": [1.0]}, "position: got [1.0]; allowed: list of length 2"),
@@ -114,6 +122,10 @@ def test_changed_changes_only_what_it_is_told() -> None:
         ({"gains": {"a": "b"}}, "gains: got {'a': 'b'}; allowed: number"),
         ({"pushes": [{"force": -3.0}]}, "pushes[0].force: got -3.0; allowed: number >= 0.0"),
         ({"pushes": [{"force": math.nan}]}, "pushes.0.force: got nan; allowed: a finite number"),
+        ({"beside": 3}, "beside: got 3; allowed: table | nothing"),
+        ({"beside": {"priority": 1.5}}, "beside.priority: got 1.5; allowed: number <= 1.0"),
+        ({"beside": {"priority": math.nan}}, "beside.priority: got nan; allowed: a finite number"),
+        ({"beside": {"speed": 1}}, "beside: got speed; allowed: the fields controller, priority, gains"),
         ({"pushes": [{"shape": "x"}]}, "pushes[0].shape: got x; allowed: one of rectangle, half-sine"),
     ],
 )
@@ -130,6 +142,22 @@ def test_unknown_field_lists_the_known_ones() -> None:
         changed(BUSY, robbot="g1")
     with pytest.raises(ScenarioError, match=r"^pushes\[0\]: got angle; allowed: the fields force, "):
         changed(BUSY, pushes=[{"angle": 3}])
+
+
+def test_a_second_robot_differs_in_nothing_but_what_is_written() -> None:
+    linear, angular = sides(load_scenario("fig7"))
+    assert (linear.priority, angular.priority) == (0.0, 1.0)
+    assert changed(angular, priority=linear.priority) == linear
+    assert sides(BUSY) == (BUSY,)
+
+
+def test_another_controller_beside_starts_with_its_own_gains() -> None:
+    scenario = changed(BUSY, beside={"controller": "slack-qp", "gains": {"com_weight": 2.0}})
+    first, second = sides(scenario)
+    assert first == BUSY
+    assert (second.controller, second.gains) == ("slack-qp", {"com_weight": 2.0})
+    same = changed(BUSY, beside={"gains": {"angular_damping": 4.0}})
+    assert sides(same)[1].gains == {"linear_damping": 9.5, "angular_damping": 4.0}
 
 
 def test_checked_refuses_nan_that_slipped_past_the_ranges() -> None:

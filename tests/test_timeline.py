@@ -11,7 +11,7 @@ from momentum_lab.events import ApplyPush, Reset, SelectController, SetGain, Set
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
-from momentum_lab.timeline import Timeline
+from momentum_lab.timeline import Timeline, fork
 
 EVENTS = {
     10: ApplyPush(Push(velocity_change=0.15)),
@@ -103,3 +103,20 @@ def test_samples_that_have_given_way_do_not_come_back(talos):
     assert session.recording.column("time")[[0, -1]] == pytest.approx([0.150, 0.179])
     run(session, timeline, 230, {})
     assert session.recording.column("time")[[0, -1]] == pytest.approx([0.150, 0.229])
+
+
+@pytest.mark.parametrize("controller", CONTROLLERS)
+def test_a_fork_goes_on_as_the_session_does_bit_for_bit(robot, controller):
+    session = session_of(robot, controller)
+    for _ in range(150):
+        session.tick()
+    other = fork(session, 200)
+    assert np.array_equal(other.recording.latest.row, session.recording.latest.row, equal_nan=True)
+    for each in (session, other):
+        each.post(ApplyPush(Push(velocity_change=0.15)))
+    for _ in range(120):
+        one, two = session.tick(), other.tick()  # in turns: neither may write into what is the other's
+        assert one.row.tobytes() == two.row.tobytes()
+    other.post(SetPriority(1.0))
+    other.tick()
+    assert (session.priority, other.priority) == (0.0, 1.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import viser
@@ -13,6 +13,12 @@ _FIELD_OF_VIEW = math.radians(32.0)
 _NARROW = 0.62
 _COVERED = 0.62
 _USUAL_ASPECT = 1.5
+# From here two robots that stand side by side are seen beside each other, degrees.
+_AZIMUTH_OF_TWO = -42.0
+# Beside two robots there is room for one that lies on the ground, in CoM heights.
+_ROOM_TO_FALL = 0.7
+# A picture whose width over height differs by more than this has another shape.
+_OTHER_SHAPE = 0.03
 # How far the robot may move before the view goes along, in CoM heights: while it stands, and when it has fallen.
 LOOSE, TIGHT = 0.35, 0.05
 
@@ -56,10 +62,22 @@ class Camera:
     def __init__(self, client: viser.ClientHandle, size: float) -> None:
         self._client, self._size = client, size
         self._center = np.zeros(2)
+        # How two robots were last looked at: which view, their distance, the shape of the picture.
+        self._looked: tuple[str, np.ndarray, float] | None = None
 
-    def look(self, name: str, center: np.ndarray) -> None:
-        """Take a named view of a robot above a point on the ground (2,), m."""
-        target, position = camera_pose(VIEWS[name], self._size, center, _aspect(self._client))
+    def look(self, name: str, center: np.ndarray, spread: np.ndarray | None = None) -> None:
+        """Take a named view.
+
+        Args:
+            name: of the view.
+            center: a point on the ground below the robot, or between two (2,), m.
+            spread: from one robot to the other, if there are two (2,), m.
+        """
+        view, aspect = VIEWS[name], _aspect(self._client)
+        self._looked = None if spread is None else (name, spread, aspect)
+        if spread is not None:
+            view = of_two(view, spread / self._size)
+        target, position = camera_pose(view, self._size, center, aspect)
         self._center = center
         self._client.camera.fov = _FIELD_OF_VIEW
         self._client.camera.position = position
@@ -72,6 +90,10 @@ class Camera:
             center: a point on the ground below the robot (2,), m.
             leash: how far it may go, in CoM heights.
         """
+        if self._looked is not None and abs(self._looked[2] - _aspect(self._client)) > _OTHER_SHAPE:
+            self.look(
+                self._looked[0], center, self._looked[1]
+            )  # a panel has been docked: both must fit again
         way = center - self._center
         distance = float(np.linalg.norm(way))
         slack = leash * self._size
@@ -87,6 +109,18 @@ def _aspect(client: viser.ClientHandle) -> float:
     """Width over height of the picture, as the browser tells it."""
     width, height = client.camera.image_width, client.camera.image_height
     return width / height if width > 0 and height > 0 else _USUAL_ASPECT
+
+
+def of_two(view: View, spread: np.ndarray) -> View:
+    """The view for two robots: from where they do not hide each other, and wide enough for both.
+
+    Args:
+        view: of one robot.
+        spread: from one robot to the other (2,), in CoM heights.
+    """
+    azimuth = view.azimuth if view.azimuth in (0.0, -90.0) else _AZIMUTH_OF_TWO
+    across = np.array([-math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))])
+    return replace(view, azimuth=azimuth, width=view.width + _ROOM_TO_FALL + abs(float(across @ spread)))
 
 
 def camera_pose(view: View, size: float, center: np.ndarray, aspect: float) -> tuple[np.ndarray, np.ndarray]:

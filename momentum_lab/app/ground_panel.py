@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 import viser
 
@@ -14,7 +14,8 @@ from momentum_lab.errors import InputError
 from momentum_lab.events import MoveGround, SetFriction, SetGroundSense, StopGround
 from momentum_lab.physics.plate import Axis, Course, PlateMotion
 
-_BOTH = "both"
+Choice = TypeVar("Choice", bound=str)
+_ALL = "all feet"
 _WAYS: dict[str, Axis] = {
     "forward and back": "x",
     "left and right": "y",
@@ -42,12 +43,12 @@ class GroundPanel:
     ) -> None:
         self._post, self._tell, self._feet = post, tell, feet
         with gui.add_folder("Ground", expand_by_default=False):
-            self._foot: Any = gui.add_dropdown("under", (_BOTH, *feet), hint="Whose ground is changed.")
+            self._foot: Any = gui.add_dropdown("under", (_ALL, *feet), hint="Whose ground is changed.")
             self._friction: Bound[float] = Bound(
                 gui.add_slider(
                     "friction", 0.05, 1.5, 0.05, 0.7, hint="Coulomb coefficient: 0.1 ice, 1 rubber."
                 ),
-                lambda value: SetFriction(float(value), self._name),
+                lambda value: SetFriction(value, self._name),
                 post,
             )
             self._way: Any = gui.add_dropdown("motion", tuple(_WAYS), hint="Where the plate goes or turns.")
@@ -62,7 +63,7 @@ class GroundPanel:
             )
             self._sense: Bound[str] = Bound(
                 gui.add_dropdown("the robot", tuple(_TOLD), hint="What it knows of the ground it stands on."),
-                lambda words: SetGroundSense(_TOLD[words]),  # type: ignore[arg-type]
+                lambda words: SetGroundSense(_TOLD.get(words, words)),  # type: ignore[arg-type]
                 post,
             )
             move = gui.add_button("Move the ground", icon=viser.Icon.ARROWS_MOVE)
@@ -73,14 +74,16 @@ class GroundPanel:
     def follow(self, truth: Truth) -> None:
         """Show the friction and the sense that are the case."""
         if truth.friction:
-            self._friction.follow(truth.friction[self._feet.index(self._name) if self._name else 0])
+            self._friction.follow(
+                truth.friction[self._feet.index(self._name) if self._name in self._feet else 0]
+            )
         self._sense.follow(_SENSES[truth.ground_sense])
 
     def set_feet(self, feet: tuple[str, ...]) -> None:
         """Fit the choice to a robot."""
         if feet != self._feet:
             self._feet = feet
-            self._foot.options = (_BOTH, *feet)
+            self._foot.options = (_ALL, *feet)
 
     def move(self) -> None:
         """Let the plate begin the motion that the widgets describe."""
@@ -91,14 +94,33 @@ class GroundPanel:
 
     @property
     def _name(self) -> str:
-        """The chosen foot; empty for all."""
-        return self._foot.value if self._foot.value in self._feet else ""
+        """The chosen foot; empty for all. A name that no foot has is for the session to refuse."""
+        return "" if self._foot.value == _ALL else str(self._foot.value)
 
     def _motion(self) -> PlateMotion:
-        axis = _WAYS[self._way.value]
-        far, period = float(self._far.value), float(self._period.value)
-        for name, value in (("how far", far), ("period", period)):
-            if not math.isfinite(value):
-                raise InputError(name, value, "a finite number")
-        turning = axis in ("roll", "pitch")
-        return PlateMotion(axis, far if turning else 0.01 * far, _COURSES[self._course.value], period)
+        axis = _chosen("motion", self._way.value, _WAYS)
+        course = _chosen("how often", self._course.value, _COURSES)
+        far, period = _number("how far", self._far.value), _number("period", self._period.value)
+        return PlateMotion(axis, far if axis in ("roll", "pitch") else 0.01 * far, course, period)
+
+
+def _chosen(name: str, value: object, choices: dict[str, Choice]) -> Choice:
+    """What a word of a dropdown means.
+
+    Raises:
+        InputError: a client has sent another word.
+    """
+    if not isinstance(value, str) or value not in choices:
+        raise InputError(name, value, f"one of {', '.join(choices)}")
+    return choices[value]
+
+
+def _number(name: str, value: object) -> float:
+    """The number of a slider.
+
+    Raises:
+        InputError: a client has sent something else.
+    """
+    if not isinstance(value, int | float) or not math.isfinite(value):
+        raise InputError(name, value, "a finite number")
+    return float(value)

@@ -4,12 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
+from typing import TypeVar
 
 import msgspec
 
+from momentum_lab.beside import Beside
 from momentum_lab.errors import InputError
-from momentum_lab.events import ApplyPush, Event, LoadScenario, LookBack, SelectRobot, SetSpeed, StepOnce
+from momentum_lab.events import (
+    ApplyPush,
+    Event,
+    Foresee,
+    LoadScenario,
+    LookBack,
+    SelectRobot,
+    SetBeside,
+    SetSpeed,
+    StepOnce,
+)
 from momentum_lab.physics.push import Push
+
+Data = TypeVar("Data", Push, Beside)
 
 SLOWEST = 1.0 / 8.0
 MOST_TICKS = 1000
@@ -43,7 +57,11 @@ def checked_event(event: Event, robots: Collection[str], scenarios: Collection[s
         case LoadScenario(name) if name not in scenarios:
             raise InputError("scenario", name, f"one of {', '.join(scenarios)}")
         case ApplyPush(push):
-            return ApplyPush(_checked_push(push))
+            return ApplyPush(_checked(push))
+        case Foresee(push):
+            return Foresee(_checked(push))
+        case SetBeside(beside) if beside is not None:
+            return SetBeside(_checked(beside))
     return event
 
 
@@ -56,13 +74,14 @@ def _check_plain(event: Event) -> None:
             raise InputError(field, f"{value[:20]}...", f"at most {_MOST_LETTERS} letters")
 
 
-def _checked_push(push: Push) -> Push:
+def _checked(data: Data) -> Data:
+    """The same data, every field within its range."""
     try:
-        return msgspec.convert(msgspec.to_builtins(push), Push)
+        return msgspec.convert(msgspec.to_builtins(data), type(data))
     except msgspec.ValidationError as error:
         message, _, where = str(error).partition(" - at ")
-        field = where.strip("`").removeprefix("$.") or "push"
-        raise InputError(field, getattr(push, field, push), message) from error
+        field = where.strip("`").removeprefix("$.") or type(data).__name__.lower()
+        raise InputError(field, getattr(data, field, data), message) from error
 
 
 def _leaves(value: object, field: str) -> list[tuple[str, object]]:

@@ -1,4 +1,4 @@
-"""Keys and commands. Space and arrows stay with the widgets."""
+"""Keys and commands. Space and arrows stay with the widgets; W, A, S, D, Q and E move the camera."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 import viser
 
 from momentum_lab.app.push_panel import PushPanel
+from momentum_lab.app.runs_panel import RunsPanel
 from momentum_lab.app.status_bar import LARGE_STEP, SMALL_STEP, StatusBar
 from momentum_lab.app.tabs import Tabs
 from momentum_lab.app.widgets import Post
@@ -20,7 +21,10 @@ _REPEATED = 0.12
 
 _HELP = """
 **P** push &nbsp;·&nbsp; **K** play or pause &nbsp;·&nbsp; **J** step 1 ms &nbsp;·&nbsp; **L** step 20 ms
-&nbsp;·&nbsp; **R** stand up again &nbsp;·&nbsp; **1 2 3** tabs &nbsp;·&nbsp; **H** this help
+&nbsp;·&nbsp; **R** stand up again &nbsp;·&nbsp; **1 2 3 4** tabs &nbsp;·&nbsp; **H** this help
+
+**F** what would this push do &nbsp;·&nbsp; **M** keep this run as A &nbsp;·&nbsp; **N** same pushes again
+&nbsp;·&nbsp; **G** show or hide A
 
 *Look back* shows what was; **B** goes on from the instant you look at, with other gains if you like.
 
@@ -36,12 +40,18 @@ Drag to turn the picture, right-drag to move it, scroll to come closer.
 """
 
 
-def add_keys(client: viser.ClientHandle, post: Post, push: PushPanel, status: StatusBar, tabs: Tabs) -> None:
+def add_keys(
+    client: viser.ClientHandle, post: Post, push: PushPanel, status: StatusBar, tabs: Tabs, runs: RunsPanel
+) -> None:
     """Give a browser tab its keys; all of them are in the command palette too."""
     keys: tuple[tuple[str, Any, Callable[[], None]], ...] = (
         ("Push", "P", push.apply),
         ("Repeat the last push", None, push.apply_again),
         ("Play or pause", "K", status.toggle),
+        ("What would this push do?", "F", push.ask),
+        ("Keep this run as A", "M", runs.keep),
+        ("Same pushes again", "N", runs.run_again),
+        ("Show or hide A", "G", runs.toggle_ghost),
         ("Step 1 ms", "J", lambda: post(StepOnce(SMALL_STEP))),
         ("Step 20 ms", "L", lambda: post(StepOnce(LARGE_STEP))),
         ("Go on from the instant that is looked at", "B", lambda: post(Branch())),
@@ -49,6 +59,7 @@ def add_keys(client: viser.ClientHandle, post: Post, push: PushPanel, status: St
         ("Push tab", "1", lambda: tabs.open(0)),
         ("Control tab", "2", lambda: tabs.open(1)),
         ("View tab", "3", lambda: tabs.open(2)),
+        ("Runs tab", "4", lambda: tabs.open(3)),
         ("Help", "H", lambda: _show_help(client)),
     )
     for label, hotkey, act in keys:

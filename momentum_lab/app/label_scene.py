@@ -79,10 +79,11 @@ class LabelScene:
 
     Args:
         client: the browser tab.
+        root: name of the node that everything hangs below; empty: the world.
     """
 
-    def __init__(self, client: viser.ClientHandle) -> None:
-        self._client = client
+    def __init__(self, client: viser.ClientHandle, root: str = "") -> None:
+        self._client, self._root = client, root
         self._handles: dict[str, viser.LabelHandle] = {}
         self._at: dict[str, np.ndarray] = {}
 
@@ -104,7 +105,7 @@ class LabelScene:
         handle = self._handles.get(label.key)
         if handle is None:
             self._handles[label.key] = self._client.scene.add_label(
-                f"/labels/{label.key}",
+                f"{self._root}/labels/{label.key}",
                 label.text,
                 position=label.at,
                 anchor=label.anchor,

@@ -38,13 +38,14 @@ class MarkScene:
     Args:
         client: the browser tab.
         size: height of the robot's CoM, m; marks of small robots are small.
+        root: name of the node that everything hangs below; empty: the world.
     """
 
-    def __init__(self, client: viser.ClientHandle, size: float) -> None:
-        self._client = client
+    def __init__(self, client: viser.ClientHandle, size: float, root: str = "") -> None:
+        self._client, self._root = client, root
         self._size = size
         self._drawings: dict[str, _Drawing] = {}
-        self._labels = LabelScene(client)
+        self._labels = LabelScene(client, root)
         self._points: dict[str, np.ndarray] = {}
 
     def draw(self, marks: list[Mark], shown: Collection[str], labelled: Collection[str]) -> None:
@@ -65,7 +66,7 @@ class MarkScene:
     def remove(self) -> None:
         """Take all marks out of the scene."""
         for key in self._drawings:
-            self._client.scene.remove_by_name(f"/marks/{key}")
+            self._client.scene.remove_by_name(f"{self._root}/marks/{key}")
         self._labels.remove()
 
     def _draw_one(self, mark: Mark) -> None:
@@ -75,13 +76,17 @@ class MarkScene:
             return
         self._points[mark.key] = points
         if mark.key not in self._drawings:
-            self._drawings[mark.key] = _drawing(self._client, STYLES[mark.key], points, self._size)
+            self._drawings[mark.key] = _drawing(
+                self._client, self._root, STYLES[mark.key], points, self._size
+            )
         else:
             self._drawings[mark.key].move(points)
 
 
-def _drawing(client: viser.ClientHandle, style: MarkStyle, points: np.ndarray, size: float) -> _Drawing:
-    name = f"/marks/{style.key}"
+def _drawing(
+    client: viser.ClientHandle, root: str, style: MarkStyle, points: np.ndarray, size: float
+) -> _Drawing:
+    name = f"{root}/marks/{style.key}"
     if is_solid(style.shape):
         return _Solids(client, name, style, points, size)
     if style.shape in _SHAFT:

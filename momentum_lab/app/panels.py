@@ -14,6 +14,7 @@ from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET
 from momentum_lab.app.mismatch_panel import MismatchPanel
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
+from momentum_lab.app.runs_panel import RunsPanel
 from momentum_lab.app.status_bar import StatusBar
 from momentum_lab.app.tabs import Tabs
 from momentum_lab.app.view_panel import ViewPanel, ViewSettings
@@ -67,6 +68,8 @@ class Panels:
             self.mismatch = MismatchPanel(gui, post, truth)
         with group.add_tab("View", viser.Icon.EYE):
             ViewPanel(gui, self.settings, look, redraw)
+        with group.add_tab("Runs", viser.Icon.VERSIONS):
+            self.runs = RunsPanel(gui, post, redraw, truth)
         plots = gui.add_panel()
         with plots.add_tab("Plots", viser.Icon.CHART_LINE):
             gui.add_html(
@@ -77,4 +80,4 @@ class Panels:
         plots.set_width(_LEFT)
         if not roomy:
             plots.minimize()
-        add_keys(client, post, self.push, self.status, Tabs(client, group))
+        add_keys(client, post, self.push, self.status, Tabs(client, group), self.runs)

@@ -17,6 +17,8 @@ _PLATFORM = (0.9, 0.9)
 _FIRM, _SLIPPERY = (186, 176, 158), (150, 196, 224)
 # Ground with less friction than this looks like ice.
 _ICE = 0.35
+# Planes that differ by less than this are one, m and rad.
+_SAME = 1e-6
 
 
 class PlateScene:
@@ -25,10 +27,11 @@ class PlateScene:
     Args:
         client: the browser tab.
         robot: whose feet they are under.
+        root: name of the node that everything hangs below; empty: the world.
     """
 
-    def __init__(self, client: viser.ClientHandle, robot: RobotModel) -> None:
-        self._client = client
+    def __init__(self, client: viser.ClientHandle, robot: RobotModel, root: str = "") -> None:
+        self._client, self._root = client, root
         self._sizes = [(sole.upper - sole.lower + 2.0 * _RIM).tolist() for sole in robot.soles]
         self._middles = [np.append((sole.lower + sole.upper) / 2.0, 0.0) for sole in robot.soles]
         self._boxes: list[Any] = []
@@ -43,14 +46,17 @@ class PlateScene:
             friction: Coulomb coefficient of each.
             uneven: whether the ground is anything but the floor.
         """
-        one = bool(np.array_equal(poses, np.tile(poses[0], (len(poses), 1)))) and len(set(friction)) == 1
+        one = len(set(friction)) == 1 and on_one_plane(poses)
         shown = (uneven, one, friction)
         if shown != self._shown:
             self._build(shown)
         if self._boxes and not np.array_equal(poses, self._drawn if self._drawn is not None else ()):
             self._drawn = poses.copy()
             for foot, box in enumerate(self._boxes):
-                self._place(box, pin.XYZQUATToSE3(poses[foot]), np.zeros(3) if one else self._middles[foot])
+                plate, middle = pin.XYZQUATToSE3(poses[foot]), self._middles[foot]
+                if one:
+                    middle = plate.actInv(poses[:, :3].mean(axis=0))
+                self._place(box, plate, middle)
 
     def remove(self) -> None:
         """Take all boxes away."""
@@ -68,7 +74,7 @@ class PlateScene:
         for i, (length, width) in enumerate(sizes):
             self._boxes.append(
                 self._client.scene.add_box(
-                    f"/plates/{i}",
+                    f"{self._root}/plates/{i}",
                     color=_SLIPPERY if friction[i] < _ICE else _FIRM,
                     dimensions=(length, width, _THICKNESS),
                     opacity=0.75,
@@ -80,3 +86,13 @@ class PlateScene:
         x, y, z, w = pin.Quaternion(plate.rotation).coeffs().tolist()
         box.position = plate.act(middle - np.array([0.0, 0.0, _THICKNESS / 2.0]))
         box.wxyz = (w, x, y, z)
+
+
+def on_one_plane(poses: np.ndarray) -> bool:
+    """Whether plates with poses (F, 7) could be one."""
+    first = pin.XYZQUATToSE3(poses[0])
+    others = [first.actInv(pin.XYZQUATToSE3(pose)) for pose in poses[1:]]
+    return all(
+        abs(other.translation[2]) < _SAME and np.abs(other.rotation - np.eye(3)).max() < _SAME
+        for other in others
+    )

@@ -2,47 +2,41 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
+import numpy as np
 
-from momentum_lab.app.wire import Fallen, Truth
-from momentum_lab.control.gains import declared_gains
-from momentum_lab.control.ground_sense import GroundSense
-from momentum_lab.control.motion import AngularGoal
-from momentum_lab.control.planner import OWN
+from momentum_lab.app.chosen import chosen_of, values_of
+from momentum_lab.app.companion import Companion
+from momentum_lab.app.foresight import Foresight
+from momentum_lab.app.wire import Fallen, Foreseen, Truth
+from momentum_lab.beside import Beside
+from momentum_lab.control.motion import motions_of
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.events import (
     ApplyPush,
     Branch,
     Event,
+    Foresee,
     LoadScenario,
     LookBack,
     MoveGround,
     Pause,
     Play,
     Reset,
-    SelectController,
-    SelectPlanner,
+    RunAgain,
     SelectRobot,
     SessionEvent,
-    SetAngularGoal,
-    SetDirections,
+    SetBeside,
     SetFriction,
-    SetGain,
-    SetGroundSense,
-    SetMismatch,
-    SetMotion,
-    SetPriority,
     SetSpeed,
     StepOnce,
     StopGround,
 )
-from momentum_lab.momentum.directions import directions, text_of
-from momentum_lab.physics.mismatch import EXACT, Mismatch, changes, with_error
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
 from momentum_lab.robot.catalog import load_spec
-from momentum_lab.scenario import Scenario, changed, load_scenario
+from momentum_lab.scenario import Scenario, changed, load_scenario, sides
 from momentum_lab.session import Session
 from momentum_lab.timeline import Timeline
 
@@ -51,43 +45,8 @@ MEMORY = 60.0
 
 # Samples whose memory is made ready before the first tick, and in each idle moment afterwards.
 _AT_ONCE, _IN_PASSING = 2000, 256
-
-
-@dataclass(frozen=True, slots=True)
-class Chosen:
-    """What a person has chosen for a session."""
-
-    controller: str
-    priority: float
-    controlled: str
-    planner: str
-    motion: str
-    angular_goal: AngularGoal
-    gains: dict[str, float]
-    ground_sense: GroundSense = "told"
-    mismatch: Mismatch = EXACT
-
-    def until(self, other: Chosen) -> list[SessionEvent]:
-        """The events that lead from these choices to others."""
-        events: list[SessionEvent] = []
-        gains = self.gains
-        if other.controller != self.controller:
-            events.append(SelectController(other.controller))
-            gains = _values(controller_entry(other.controller).gains)
-        if other.priority != self.priority:
-            events.append(SetPriority(other.priority))
-        if other.controlled != self.controlled:
-            events.append(SetDirections(other.controlled))
-        if other.planner != self.planner:
-            events.append(SelectPlanner(other.planner))
-        if other.motion != self.motion:
-            events.append(SetMotion(other.motion))
-        if other.ground_sense != self.ground_sense:
-            events.append(SetGroundSense(other.ground_sense))
-        events += [SetMismatch(*change) for change in changes(self.mismatch, other.mismatch)]
-        if other.angular_goal != self.angular_goal:
-            events.append(SetAngularGoal(other.angular_goal))
-        return events + [SetGain(name, value) for name, value in other.gains.items() if value != gains[name]]
+# When the first push of a run that is done again comes, if it did not come sooner, s.
+_BEFORE_PUSH = 0.5
 
 
 class Playback:
@@ -103,6 +62,8 @@ class Playback:
         self.speed = 1.0
         self.playing = True
         self.stopped: str | None = None
+        self.beside: Companion | None = None
+        self.foresights: tuple[Foresight, ...] = ()
         self._waiting: list[SessionEvent] = []
         self._begin(scenario)
 
@@ -143,6 +104,12 @@ class Playback:
                 self._branch()
             case SetSpeed(value):
                 self.speed = value
+            case SetBeside(beside):
+                self._put_beside(beside)
+            case Foresee(push):
+                self._foresee(push)
+            case RunAgain():
+                self._begin(self._again())
             case SelectRobot(name):
                 self._begin(self._with_robot(name))
             case LoadScenario(name):
@@ -160,11 +127,13 @@ class Playback:
                 self.session.tick()
             except SimulationError as error:
                 self.stopped, self.playing = str(error), False
+            if self.beside is not None:
+                self.beside.tick()
         self._waiting.clear()
 
     def truth(self, real_time_factor: float) -> Truth:
         """What is the case now; what waits for the next tick counts as done."""
-        session, chosen = self.session, self._chosen()
+        session, chosen = self.session, chosen_of(self.session, self._waiting)
         return Truth(
             run=self.run,
             scenario=session.scenario.name,
@@ -184,43 +153,43 @@ class Playback:
             failures=session.solver_failures,
             stopped=self.stopped,
             push=_latest(session.pushes, self.shown.number("time")),
-            friction=tuple(session.ground.friction(self.shown.number("time")).tolist()),
+            friction=self._friction(),
             uneven=not session.ground.is_floor,
             floor=float(session.ground.floor.origin[2]),
             ground_sense=chosen.ground_sense,
             mismatch=chosen.mismatch,
             behind=self._behind * session.scenario.timestep,
+            first_push=_first(session.pushes, self.shown.number("time")),
+            beside=None if self.beside is None else self.beside.beside,
         )
 
-    def _chosen(self) -> Chosen:
-        """The choices of this moment; those that wait for the next tick count as made."""
-        session = self.session
-        priority, controlled = session.priority, text_of(session.controlled)
-        motion, angular_goal = session.motion, session.angular_goal
-        controller, planner, gains = session.controller, session.planner, _values(session.gains)
-        sense, mismatch = session.ground_sense, session.mismatch
+    def beside_truth(self, first: Truth) -> Truth | None:
+        """What is the case with the robot beside the first."""
+        return None if self.beside is None else self.beside.truth(first, self._behind)
+
+    @property
+    def beside_shown(self) -> Sample | None:
+        """The sample of the robot beside the first that is looked at."""
+        return None if self.beside is None else self.beside.shown(self._behind)
+
+    def look_ahead(self, ticks: int) -> tuple[Foreseen, ...]:
+        """Some ticks of what is being foreseen; the answers once they are all there, else nothing."""
+        done = [foresight.go_on(ticks) for foresight in self.foresights]
+        if not all(done):
+            return ()
+        answers = tuple(foresight.answer() for foresight in self.foresights)
+        self.foresights = ()
+        return answers
+
+    def _friction(self) -> tuple[float, ...]:
+        """Friction under each foot at what is looked at; what waits for the next tick counts as done."""
+        friction = self.session.ground.friction(self.shown.number("time"))
+        names = self.session.robot.foot_names
         for event in self._waiting:
-            match event:
-                case SetPriority(value):
-                    priority = value
-                case SetDirections(text):
-                    controlled = text_of(directions(text))
-                case SelectPlanner(name):
-                    planner = name
-                case SetMotion(name):
-                    motion = name
-                case SetAngularGoal(goal):
-                    angular_goal = goal
-                case SetGroundSense(told_or_felt):
-                    sense = told_or_felt
-                case SetMismatch(name, value):
-                    mismatch = with_error(mismatch, name, value)
-                case SetGain(name, value):
-                    gains[name] = value
-                case SelectController(name):
-                    controller, gains = name, _values(controller_entry(name).gains)
-                    planner = planner if planner in controller_entry(name).planners else OWN
-        return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains, sense, mismatch)
+            if isinstance(event, SetFriction):
+                changed_feet = [name == event.foot or not event.foot for name in names]
+                friction = np.where(changed_feet, event.value, friction)
+        return tuple(friction.tolist())
 
     def _fall(self) -> Fallen | None:
         """The fall, unless it is still to come at the instant that is looked at."""
@@ -244,18 +213,23 @@ class Playback:
         if not self._behind:
             self.playing = self.stopped is None
             return
-        chosen = self._chosen()
+        chosen = chosen_of(self.session, self._waiting)
         # The sample that is looked at is the first of the branch: it is simulated again, under the new choices.
         self._timeline.go_back(self._behind + 1)
+        if self.beside is not None and not self.beside.back(self._behind + 1):
+            self.beside = Companion.of(self.session, self.beside.beside)
         self._behind, self.stopped, self.playing = 0, None, True
         self._waiting.clear()
-        for event in self._chosen().until(chosen):
+        for event in chosen_of(self.session, self._waiting).until(chosen):
             self._pass_on(event)
         self.tick(1)
 
     def _pass_on(self, event: SessionEvent) -> None:
         self.session.post(event)
         self._waiting.append(event)
+        if self.beside is not None:
+            self.beside.take(event)
+            self.beside.align(chosen_of(self.session, self._waiting))
         if isinstance(event, ApplyPush | MoveGround | StopGround | SetFriction):
             self._behind = 0  # it acts now, and has to be seen
         if isinstance(event, Reset):
@@ -269,9 +243,15 @@ class Playback:
         """A new session, standing; the old one goes on if this one cannot be made."""
         old = getattr(self, "session", None)
         robot = old.robot if old is not None and old.scenario.robot == scenario.robot else None
-        session = Session(scenario, robot, capacity=round(MEMORY / scenario.timestep))
-        session.recording.reserve(_AT_ONCE)
-        self.session, self._timeline = session, Timeline(session)
+        sessions = []
+        for side in sides(scenario):
+            sessions.append(Session(side, robot, capacity=round(MEMORY / scenario.timestep)))
+            sessions[-1].recording.reserve(_AT_ONCE)
+            robot = sessions[-1].robot
+        self.session, self._timeline = sessions[0], Timeline(sessions[0])
+        beside = scenario.beside
+        self.beside = None if beside is None else Companion(sessions[-1], beside)
+        self.foresights = ()
         self._behind = 0
         self._waiting.clear()
         self.stopped = None
@@ -279,11 +259,39 @@ class Playback:
         self.run += 1
         self.tick(1)
 
+    def _put_beside(self, beside: Beside | None) -> None:
+        """A robot beside the first that differs so; it begins where the first one is."""
+        if beside is None:
+            self.beside = None
+            return
+        chosen = chosen_of(self.session, self._waiting)
+        chosen.beside(beside)  # refuses what cannot be, before anything has changed
+        if self.beside is None:
+            self.beside = Companion.of(self.session, beside)
+            for event in self._waiting:
+                self.beside.take(event)
+        self.beside.beside = beside
+        self.beside.align(chosen)
+
+    def _foresee(self, push: Push) -> None:
+        """Begin to try a push on copies of the sessions."""
+        found = [Foresight(self.session, self._waiting, push)]
+        if self.beside is not None:
+            found.append(Foresight(self.beside.session, self.beside.waiting, push))
+        self.foresights = tuple(found)
+
+    def _again(self) -> Scenario:
+        """The present choices and pushes from the start, the first push soon after it."""
+        pushes = self.session.pushes
+        early = max(0.0, min((push.start for push in pushes), default=0.0) - _BEFORE_PUSH)
+        again = tuple(msgspec.structs.replace(push, start=push.start - early) for push in pushes)
+        return changed(self._with_robot(self.session.scenario.robot), pushes=again)
+
     def _with_robot(self, name: str) -> Scenario:
-        """The same scenario, priority and gains with another robot."""
+        """The same scenario and choices with a robot."""
         truth = self.truth(0.0)
-        defaults = _values(controller_entry(truth.controller).gains)
-        gains = {name: value for name, value in truth.gains.items() if value != defaults[name]}
+        defaults = values_of(controller_entry(truth.controller).gains)
+        gains = {gain: value for gain, value in truth.gains.items() if value != defaults[gain]}
         return changed(
             self.session.scenario,
             robot=name,
@@ -291,10 +299,12 @@ class Playback:
             priority=truth.priority,
             controlled=truth.controlled,
             planner=truth.planner,
-            motion=truth.motion if truth.motion in load_spec(name).motions else "",
+            motion=truth.motion if truth.motion in motions_of(load_spec(name)) else "",
             angular_goal=truth.angular_goal,
+            ground_sense=truth.ground_sense,
             gains=gains,
             mismatch=truth.mismatch,
+            beside=truth.beside,
         )
 
     def _scenario(self, name: str) -> Scenario:
@@ -303,8 +313,8 @@ class Playback:
         return changed(scenario, robot=self.session.scenario.robot)
 
 
-def _values(gains: object) -> dict[str, float]:
-    return {name: float(getattr(gains, name)) for name in declared_gains(gains)}
+def _first(pushes: tuple[Push, ...], time: float) -> Push | None:
+    return min((push for push in pushes if push.start <= time), key=lambda push: push.start, default=None)
 
 
 def _latest(pushes: tuple[Push, ...], time: float) -> Push | None:

@@ -24,6 +24,8 @@ _HEIGHT = 100
 _UNSEEN = 1e-5
 _AXIS = {"font": "10px sans-serif", "gap": 2, "ticks": {"size": 3}}
 _POINTS = ("com", "cop", "cmp", "capture")
+# Of a run that has been kept, the points that say most: where its CoM went, and what pushed it there.
+_KEPT_POINTS = ("com", "cop")
 # What is asked for is grey and dashed, what the ground may give blue, what it gave green like the GRF.
 _KINDS: dict[str, tuple[Color, list[int]]] = {
     "desired": (GREY, [6, 4]),
@@ -50,24 +52,38 @@ class Plots:
         self._history: History | None = None
         self._direction = np.array([1.0, 0.0])
         self._until = math.inf
+        self._kept: History | None = None
+        self.ahead = 0.0
         self._places = _plot(
             gui,
             "Points along the push (cm)",
             [_line(STYLES[name].label, STYLES[name].color) for name in _POINTS]
-            + [_line("support", GREY, [3, 3]), _line("", GREY, [3, 3])],
+            + [_line("support", GREY, [3, 3]), _line("", GREY, [3, 3])]
+            + [_kept_line(STYLES[name].color) for name in _KEPT_POINTS],
             soft=_SOFT["places"],
             bands=({"series": (6, 5), "fill": "rgba(110,110,110,0.10)"},),
         )
         self._linear = _plot(
-            gui, "Rate of linear momentum along the push (N)", _rates(), soft=_SOFT["linear"]
+            gui,
+            "Rate of linear momentum along the push (N)",
+            [*_rates(), _kept_line(GREEN)],
+            soft=_SOFT["linear"],
         )
         self._angular = _plot(
-            gui, "Rate of angular momentum about the axis across (N m)", _rates(), soft=_SOFT["angular"]
+            gui,
+            "Rate of angular momentum about the axis across (N m)",
+            [*_rates(), _kept_line(GREEN)],
+            soft=_SOFT["angular"],
         )
         self._momenta = _plot(
             gui,
             "Momentum: linear (N s), angular (kg m²/s)",
-            [_line("linear, along the push", ORANGE), _line("angular, about the axis across", PURPLE)],
+            [
+                _line("linear, along the push", ORANGE),
+                _line("angular, about the axis across", PURPLE),
+                _kept_line(ORANGE),
+                _kept_line(PURPLE),
+            ],
             soft=_SOFT["momenta"],
         )
 
@@ -80,6 +96,15 @@ class Plots:
         if self._history is not None:
             self._history.clear()
         self._next = self._next_rest = -math.inf
+
+    def keep(self) -> None:
+        """Draw what is here now as dashed curves from now on, below those of later runs."""
+        self._kept = None if self._history is None else self._history.copy()
+
+    def forget(self) -> None:
+        """Draw no dashed curves any more."""
+        self._kept = None
+        self.draw()
 
     def along(self, direction: np.ndarray) -> None:
         """Show what happens along a direction (2,) from now on, the past included."""
@@ -113,14 +138,37 @@ class Plots:
         # A push that goes on would be filled from the last sample to the end of the window.
         pushed = _framed(np.append(curves.pushed[:-1], 0.0))
         limits = [_held(_framed(limit)) for limit in curves.limits]
+        kept = [_framed(values) for values in self._kept_curves(curves.time)]
+        places = len(_KEPT_POINTS)
         columns = (
-            (self._places, [_framed(curves.points[name]) for name in _POINTS] + limits),
-            (self._linear, [_framed(curves.linear[kind]) for kind in _KINDS]),
-            (self._angular, [_framed(curves.angular[kind]) for kind in _KINDS]),
-            (self._momenta, [_framed(curves.momentum), _framed(curves.angular_momentum)]),
+            (self._places, [_framed(curves.points[name]) for name in _POINTS] + limits + kept[:places]),
+            (self._linear, [_framed(curves.linear[kind]) for kind in _KINDS] + kept[places : places + 1]),
+            (
+                self._angular,
+                [_framed(curves.angular[kind]) for kind in _KINDS] + kept[places + 1 : places + 2],
+            ),
+            (
+                self._momenta,
+                [_framed(curves.momentum), _framed(curves.angular_momentum)] + kept[places + 2 :],
+            ),
         )
         for plot, ys in columns:
             plot.data = (x, *ys, pushed)
+
+    def _kept_curves(self, times: np.ndarray) -> list[np.ndarray]:
+        """The dashed curves at the times of the others; NaN where the kept run has nothing."""
+        if self._kept is None or not len(self._kept):
+            return [np.full(len(times), np.nan)] * (len(_KEPT_POINTS) + 4)
+        at = times + self.ahead
+        kept = self._kept.curves(self._direction, float(at[-1]))
+        values = [
+            *(kept.points[name] for name in _KEPT_POINTS),
+            kept.linear["measured"],
+            kept.angular["measured"],
+            kept.momentum,
+            kept.angular_momentum,
+        ]
+        return [np.interp(at, kept.time, each, left=np.nan, right=np.nan) for each in values]
 
 
 def at_rest(curves: Curves) -> bool:
@@ -168,6 +216,11 @@ def _held(values: np.ndarray) -> np.ndarray:
 
 def _rates() -> list[dict[str, Any]]:
     return [_line(kind, color, dash) for kind, (color, dash) in _KINDS.items()]
+
+
+def _kept_line(color: Color) -> dict[str, Any]:
+    """A curve of a kept run: dashed and pale, without a name of its own."""
+    return {**_line("", color, [4, 4]), "stroke": _css(color, 0.75)}
 
 
 def _line(label: str, color: Color, dash: list[int] | None = None) -> dict[str, Any]:

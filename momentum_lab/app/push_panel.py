@@ -14,7 +14,7 @@ from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.support_now import polygon_of
 from momentum_lab.app.widgets import Post
 from momentum_lab.errors import InputError
-from momentum_lab.events import ApplyPush
+from momentum_lab.events import ApplyPush, Foresee
 from momentum_lab.momentum.pendulum import pendulum_frequency, pendulum_impulse_bound
 from momentum_lab.momentum.support import distance_to_edge
 from momentum_lab.physics.push import Push
@@ -54,6 +54,12 @@ class PushPanel:
         self._size_text = ""
         gui.add_html(html.BIG_NEXT)
         self.button = gui.add_button("Push  (P)", color=(213, 94, 0), icon=viser.Icon.HAND_MOVE)
+        self._ask = gui.add_button(
+            "What would it do?  (F)",
+            color="gray",
+            icon=viser.Icon.EYE,
+            hint="Tries the push on a copy of the robot and draws where its CoM and capture point would go.",
+        )
         self._size = gui.add_html("")
         self._force: Any = gui.add_slider("force (N)", 0.0, 500.0, 1.0, 200.0, hint="Peak force of the push.")
         self._duration: Any = gui.add_slider(
@@ -150,6 +156,13 @@ class PushPanel:
         last = self._last
         self._give(self.push if last is None else lambda: last)
 
+    def ask(self) -> None:
+        """Ask where the push would take the robot; nobody is pushed."""
+        try:
+            self._post(Foresee(self.push()))
+        except InputError as error:
+            self._tell(str(error))
+
     def _give(self, make: Callable[[], Push]) -> None:
         try:
             push = make()
@@ -160,6 +173,7 @@ class PushPanel:
 
     def _wire(self) -> None:
         self.button.on_click(lambda _: self.apply())
+        self._ask.on_click(lambda _: self.ask())
         self.repeat.on_click(lambda _: self.apply_again())
         self._presets.on_click(lambda event: self._point_to(event.target.value))
         self._through_com.on_update(lambda _: self._free_height())

@@ -8,9 +8,9 @@ import numpy as np
 import pinocchio as pin
 import viser
 
+from momentum_lab.app.marks import Color
 from momentum_lab.app.robots import LoadedRobot
 
-_ROOT = "/robot"
 _FREE_FLYER = 1
 # Less than this does not show, rad and m.
 _SAME_ANGLE, _SAME_PLACE = 6e-4, 2e-4
@@ -24,9 +24,19 @@ class RobotScene:
         client: the browser tab.
         robot: the robot.
         q: its configuration (nq,).
+        root: name of the node that everything hangs below.
+        color: of all its meshes, red, green, blue, 0 to 255; None: their own.
     """
 
-    def __init__(self, client: viser.ClientHandle, robot: LoadedRobot, q: np.ndarray) -> None:
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        robot: LoadedRobot,
+        q: np.ndarray,
+        root: str = "/robot",
+        color: Color | None = None,
+    ) -> None:
+        self._root = root
         self._model = robot.model.model
         self._data = self._model.createData()
         pin.forwardKinematics(self._model, self._data, q)
@@ -38,7 +48,7 @@ class RobotScene:
                 f"{self._frames[mesh.joint].name}/mesh_{i}",
                 mesh.vertices,
                 mesh.faces,
-                color=mesh.color,
+                color=mesh.color if color is None else color,
             )
             for i, mesh in enumerate(robot.meshes)
         ]
@@ -70,6 +80,15 @@ class RobotScene:
         for mesh in self._meshes:
             mesh.opacity = _SEE_THROUGH if on else None
 
+    def fade(self, opacity: float) -> None:
+        """Let the body be a part of what it was, from 0 to 1."""
+        for mesh in self._meshes:
+            mesh.opacity = opacity
+
+    def show(self, visible: bool) -> None:
+        """Appear or disappear."""
+        self._frames[_FREE_FLYER].visible = visible
+
     def remove(self) -> None:
         """Take the robot out of the scene."""
         self._frames[_FREE_FLYER].remove()
@@ -83,7 +102,7 @@ class RobotScene:
         frames: dict[int, Any] = {}
         for joint in range(_FREE_FLYER, self._model.njoints):
             parent = frames.get(int(self._model.parents[joint]))
-            name = f"{_ROOT if parent is None else parent.name}/{joint}"
+            name = f"{self._root if parent is None else parent.name}/{joint}"
             frames[joint] = client.scene.add_frame(name, show_axes=False)
             self._place(joint, frames[joint])
         return frames

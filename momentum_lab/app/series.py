@@ -85,6 +85,13 @@ class History:
         if self._times:
             self._keep(bisect_right(self._times, self._times[-1] - KEPT), len(self._times))
 
+    def copy(self) -> History:
+        """The same samples, to which nothing is added any more."""
+        other = History(self._robot, self._layout)
+        other._times, other._rows = list(self._times), list(self._rows)
+        other._polygons, other._extents = list(self._polygons), [None] * len(self._extents)
+        return other
+
     def clear(self) -> None:
         """Forget everything."""
         self._keep(0, 0)

@@ -22,7 +22,7 @@ from momentum_lab.app.robots import RobotShelf
 from momentum_lab.app.visitor import Visitor
 from momentum_lab.errors import ServerError
 from momentum_lab.robot.catalog import robot_names
-from momentum_lab.scenario import Scenario, scenario_names
+from momentum_lab.scenario import Scenario, scenario_names, sides
 from momentum_lab.session import Session
 
 MOST_VISITORS = 12
@@ -52,7 +52,8 @@ class LabServer:
         self._scenario, self._profile = scenario, profile
         warm_up()
         self._shelf = RobotShelf()
-        Session(scenario, self._shelf.get(scenario.robot).model, capacity=1)  # refuses what cannot start
+        for side in sides(scenario):  # refuses what cannot start
+            Session(side, self._shelf.get(side.robot).model, capacity=1)
         self._choices = Choices(
             tuple(dict.fromkeys((*robot_names(), scenario.robot))),
             tuple(dict.fromkeys((*scenario_names(), scenario.name))),

@@ -10,9 +10,11 @@ from dataclasses import dataclass
 import viser
 
 from momentum_lab.app.camera import LOOSE, START_VIEW, TIGHT, VIEWS, Camera
+from momentum_lab.app.comparison import Comparison
 from momentum_lab.app.control_panel import Choices
 from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
+from momentum_lab.app.marks import FEW_LABELS
 from momentum_lab.app.overlays import Picture, overlays
 from momentum_lab.app.panels import Panels
 from momentum_lab.app.plate_scene import PlateScene
@@ -74,6 +76,7 @@ class Visitor:
         self._link = Link(scenario, choices.robots, choices.scenarios)
         self._stage: Stage | None = None
         self._panels: Panels | None = None
+        self._comparison = Comparison(client)
         self._run = -1
         self._floor = 0.0
         self._left = False
@@ -128,13 +131,19 @@ class Visitor:
         truth = frame.truth
         loaded = self._shelf.get(truth.robot)
         sample = Sample.of(loaded.layout, rows_of(frame.row, loaded.layout.width)[0])
+        if self._panels is not None:
+            self._comparison.begin(frame, loaded, self._panels.runs, self._panels.plots)
         stage = self._set_stage(truth, loaded, sample)
         panels = self._panels or self._furnish(truth, loaded.layout.foot_names)
+        self._comparison.begin(frame, loaded, panels.runs, panels.plots)
         if truth.run != self._run:
             self._run = truth.run
             panels.plots.clear()
         with self._client.atomic():  # or a picture could be sent in two halves
             self._draw_scene(stage, panels, truth, sample)
+            changed = self._comparison.draw(frame, sample, panels.settings)
+        if changed:
+            self._look(START_VIEW)
         self._client.flush()
         self._draw_panels(panels, frame, loaded, sample)
 
@@ -176,6 +185,7 @@ class Visitor:
         if settings.changed:
             settings.changed = False
             stage.body.see_through(settings.see_through)
+            self._comparison.see_through(settings.see_through)
         picture = Picture(
             stage.loaded.model, truth.push, truth.gains.get("safe_border", 0.0), settings.arrow_scale
         )
@@ -184,8 +194,11 @@ class Visitor:
             add_floor(self._client, truth.floor)
         stage.plates.draw(sample["ground_pose"], truth.friction, truth.uneven)
         stage.body.draw(sample["q"])
-        stage.camera.follow(sample["com"][:2], LOOSE if truth.fall is None else TIGHT)
-        stage.marks.draw(overlays(sample, picture), settings.shown, settings.labelled)
+        place = self._comparison.middle(sample["com"][:2])
+        stage.camera.follow(place, LOOSE if truth.fall is None and not self._comparison.other_fell else TIGHT)
+        alone = self._comparison.spread is None
+        labelled = settings.labelled if alone else settings.labelled & FEW_LABELS
+        stage.marks.draw(overlays(sample, picture), settings.shown, labelled)
 
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
         truth = frame.truth
@@ -202,6 +215,7 @@ class Visitor:
         if truth.push is not None:
             panels.plots.along(truth.push.direction[:2])
         panels.plots.add(rows_of(frame.history, loaded.layout.width))
+        self._comparison.after(frame, sample, panels.runs, panels.plots)
         panels.plots.look_at(sample.number("time") if truth.behind else math.inf)
         if not truth.playing:
             panels.plots.draw()  # nothing comes later that could show the last samples
@@ -212,4 +226,5 @@ class Visitor:
         """Turn the camera to the robot where it is now."""
         stage = self._stage
         if stage is not None and name in VIEWS:
-            stage.camera.look(name, stage.body.place_on_ground)
+            place, spread = stage.body.place_on_ground, self._comparison.spread
+            stage.camera.look(name, place if spread is None else self._comparison.middle(place), spread)

@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 
 from momentum_lab import events
+from momentum_lab.beside import Beside
 from momentum_lab.control.ground_sense import GroundSense
 from momentum_lab.control.motion import AngularGoal
 from momentum_lab.physics.mismatch import EXACT, Mismatch
@@ -55,6 +56,8 @@ class Truth(msgspec.Struct, frozen=True):
         ground_sense: whether the robot is told how the ground moves.
         mismatch: how the simulated robot differs from the one its controller believes in.
         behind: how long before the present end of the run the sample is that is looked at, s.
+        first_push: the first push since the robot stood up; None before it has begun.
+        beside: what a robot beside this one does differently; None when there is none.
     """
 
     run: int
@@ -81,6 +84,36 @@ class Truth(msgspec.Struct, frozen=True):
     ground_sense: GroundSense = "told"
     mismatch: Mismatch = EXACT
     behind: float = 0.0
+    first_push: Push | None = None
+    beside: Beside | None = None
+
+
+class Other(msgspec.Struct, frozen=True):
+    """What is new with the robot beside the first.
+
+    Attributes:
+        truth: what is the case with it.
+        row: its latest sample, float64.
+        history: its samples at the pace of the plots since the last frame, float64, oldest first.
+    """
+
+    truth: Truth
+    row: bytes
+    history: bytes
+
+
+class Foreseen(msgspec.Struct, frozen=True):
+    """What a push would do.
+
+    Attributes:
+        start: when it would begin, s.
+        rows: samples at the pace of the plots from then on, float64.
+        fall: when and why the robot would fall; None if it would stand for as long as was looked ahead.
+    """
+
+    start: float
+    rows: bytes
+    fall: Fallen | None
 
 
 class Frame(msgspec.Struct, frozen=True):
@@ -92,6 +125,8 @@ class Frame(msgspec.Struct, frozen=True):
         history: the samples at the pace of the plots since the last frame, float64, oldest first.
         notices: what has to be told to the person, once.
         late_ticks: how many ticks have begun late since the session's process started.
+        other: the robot beside the first; None when there is none.
+        foreseen: what a push would do, once for every robot and question.
     """
 
     truth: Truth
@@ -99,6 +134,8 @@ class Frame(msgspec.Struct, frozen=True):
     history: bytes
     notices: tuple[str, ...] = ()
     late_ticks: int = 0
+    other: Other | None = None
+    foreseen: tuple[Foreseen, ...] = ()
 
 
 Message = events.Event | FrameTaken | FrameWanted

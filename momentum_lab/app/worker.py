@@ -18,7 +18,16 @@ from threadpoolctl import threadpool_limits
 
 from momentum_lab.app.pacer import Pacer
 from momentum_lab.app.playback import Playback
-from momentum_lab.app.wire import Frame, FrameTaken, FrameWanted, packed, unpacked_message
+from momentum_lab.app.wire import (
+    Foreseen,
+    Frame,
+    FrameTaken,
+    FrameWanted,
+    Other,
+    Truth,
+    packed,
+    unpacked_message,
+)
 from momentum_lab.errors import LabError
 from momentum_lab.events import Event, Play, SetSpeed
 from momentum_lab.scenario import Scenario
@@ -33,6 +42,8 @@ _BATCH = 8
 _SHORT, _LONG = 0.001, 1.0
 # Messages taken in a row: a flood of them must not stop time.
 _MOST_MESSAGES = 16
+# Ticks of a foresight in a row: while time runs, as long as a due tick may wait; in a pause, as long as a person may.
+_AHEAD, _AHEAD_IN_PAUSE = 5, 50
 # Samples that a reader who does not read may miss.
 _MOST_HISTORY = 1000
 
@@ -69,6 +80,8 @@ class Worker:
         self._playback = playback
         self._pacer = Pacer(playback.session.scenario.timestep)
         self._history: list[np.ndarray] = []
+        self._other_history: list[np.ndarray] = []
+        self._foreseen: tuple[Foreseen, ...] = ()
         self._notices: list[str] = []
         self._taken = True
         self._news = True
@@ -87,6 +100,7 @@ class Worker:
             self._listen(self._rest(self._clock()))
             if self._playback.playing:
                 self._advance(min(self._pacer.due(self._clock()), _BATCH))
+            self._look_ahead()
             self._send(self._clock())
 
     def _listen(self, wait: float) -> None:
@@ -117,6 +131,7 @@ class Worker:
             self._notices.append(str(error))
         if playback.run != run:
             self._history.clear()
+            self._other_history.clear()
         if playback.run != run or playing != playback.playing or isinstance(event, Play | SetSpeed):
             self._pacer.start(self._clock(), playback.speed)
         if playback.run != run or playback.session.ticks != ticks:
@@ -135,28 +150,53 @@ class Worker:
         self._news = self._news or due > 0
 
     def _remember(self) -> None:
+        beside = self._playback.beside
         self._history.append(self._playback.latest.row.copy())
-        del self._history[:-_MOST_HISTORY]
+        if beside is not None:
+            self._other_history.append(beside.shown(0).row.copy())
+        for history in (self._history, self._other_history):
+            del history[:-_MOST_HISTORY]
+
+    def _look_ahead(self) -> None:
+        """A few ticks of what somebody wants to know beforehand; those that are due go first."""
+        if not self._playback.foresights:
+            return
+        self._foreseen = self._playback.look_ahead(_AHEAD if self._playback.playing else _AHEAD_IN_PAUSE)
+        self._news = self._news or bool(self._foreseen)
 
     def _send(self, now: float) -> None:
         """A frame, if there is something new, the last one has been taken and it is time for the next."""
         if not (self._news and self._taken) or now < self._next_frame:
             return
+        truth = self._playback.truth(self._pacer.real_time_factor(now))
         frame = Frame(
-            truth=self._playback.truth(self._pacer.real_time_factor(now)),
+            truth=truth,
             late_ticks=self._pacer.late_ticks,
             row=self._playback.shown.row.tobytes(),
-            history=b"".join(row.tobytes() for row in self._history),
+            history=_joined(self._history),
             notices=tuple(self._notices),
+            other=self._other(truth),
+            foreseen=self._foreseen,
         )
         self._history.clear()
+        self._other_history.clear()
+        self._foreseen = ()
         self._notices.clear()
         self._taken = self._news = False
         self._next_frame = max(self._next_frame + 1.0 / FRAMES_PER_SECOND, now)
         self._connection.send_bytes(packed(frame))
 
+    def _other(self, first: Truth) -> Other | None:
+        """The robot beside the first."""
+        truth, shown = self._playback.beside_truth(first), self._playback.beside_shown
+        if truth is None or shown is None:
+            return None
+        return Other(truth, shown.row.tobytes(), _joined(self._other_history))
+
     def _rest(self, now: float) -> float:
         """How long nothing has to be done, s; an event ends it early."""
+        if self._playback.foresights:
+            return 0.0
         if self._playback.playing:
             wait = self._pacer.wait(now)
             if wait == 0.0:
@@ -166,3 +206,7 @@ class Worker:
         if self._news and self._taken:
             return max(0.0, self._next_frame - now)
         return _LONG
+
+
+def _joined(rows: list[np.ndarray]) -> bytes:
+    return b"".join(row.tobytes() for row in rows)

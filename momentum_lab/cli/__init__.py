@@ -1,8 +1,9 @@
-"""The command line: momentum-lab app | run | lesson | figure | list | equations | bench.
+"""The command line: momentum-lab app | run | limit | lesson | figure | list | equations | robot-check | bench.
 
 Exit codes: 0 the command did what was asked (a robot that falls is a result, not an error), 1 something broke
-down on the way or a figure's or lesson's claim or an equation does not hold, 2 bad input, 130 stopped by Ctrl+C. Bad
-input is one line on stderr and nothing on stdout: `momentum-lab: ARGUMENT: got GIVEN; allowed: ALLOWED`.
+down on the way, a figure's or lesson's claim or an equation does not hold, or a checked robot falls, 2 bad
+input, 130 stopped by Ctrl+C. Bad input is one line on stderr and nothing on stdout:
+`momentum-lab: ARGUMENT: got GIVEN; allowed: ALLOWED`.
 """
 
 from __future__ import annotations
@@ -69,6 +70,10 @@ def _imported(name: str) -> Callable[[Namespace], int]:
         from momentum_lab.cli.run import run
 
         return run
+    if name == "limit":
+        from momentum_lab.cli.limit import limit
+
+        return limit
     if name == "lesson":
         from momentum_lab.cli.lesson import lesson
 
@@ -85,6 +90,10 @@ def _imported(name: str) -> Callable[[Namespace], int]:
         from momentum_lab.cli.equations import equations
 
         return equations
+    if name == "robot-check":
+        from momentum_lab.cli.robot_check import robot_check
+
+        return robot_check
     from momentum_lab.cli.bench import bench
 
     return bench

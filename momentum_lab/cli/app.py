@@ -5,6 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 
 from momentum_lab.cli.choices import chosen_scenario
+from momentum_lab.scenario import sides
 from momentum_lab.session import Session
 
 
@@ -16,7 +17,8 @@ def app(args: Namespace) -> int:
     """
     scenario = chosen_scenario(args)
     # A session finds everything that is wrong with a robot or a scenario, before a browser opens.
-    Session(scenario, capacity=1)
+    for side in sides(scenario):
+        Session(side, capacity=1)
 
     from momentum_lab.app.server import serve
 

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 import argparse
-import math
 import re
-from collections.abc import Callable
 from typing import Any, NoReturn
 
 from momentum_lab import __version__
+from momentum_lab.cli.values import (
+    ABOVE_ZERO,
+    controlled_directions,
+    gain_setting,
+    mismatch_setting,
+    number,
+    one_or_all,
+    whole_number,
+)
 from momentum_lab.errors import InputError
-from momentum_lab.momentum.directions import directions
 from momentum_lab.physics.plate import MAX_FRICTION
 from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
 from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 
-COMMANDS = ("app", "run", "lesson", "figure", "list", "equations", "bench")
+COMMANDS = ("app", "run", "limit", "lesson", "figure", "list", "equations", "robot-check", "bench")
 KINDS = ("robots", "controllers", "planners", "scenarios", "lessons", "figures", "gains")
 _MAX_PORT = 65535
 _MAX_BENCH_SECONDS, _MAX_BENCH_MINUTES = 600.0, 60.0
-_ABOVE_ZERO = math.ulp(0.0)
 
 
 def parsed(words: list[str]) -> argparse.Namespace:
@@ -60,69 +65,6 @@ class _Parser(argparse.ArgumentParser):
         raise InputError(argument, "nothing", "a value after it")
 
 
-def number(option: str, low: float, high: float, unit: str) -> Callable[[str], float]:
-    """A type for numbers within a range; `_ABOVE_ZERO` as the lower end leaves out zero.
-
-    Raises:
-        InputError: (the type does) the text is not a finite number within the range.
-    """
-    start = "above 0, at most" if low == _ABOVE_ZERO else f"from {low:g} to"
-
-    def convert(text: str) -> float:
-        value = as_number(text)
-        if isinstance(value, str) or not low <= value <= high:
-            raise InputError(option, text, f"a number {start} {high:g} ({unit})")
-        return value
-
-    return convert
-
-
-def whole_number(option: str, low: int, high: int) -> Callable[[str], int]:
-    """A type for whole numbers within a range.
-
-    Raises:
-        InputError: (the type does) the text is not such a number.
-    """
-
-    def convert(text: str) -> int:
-        if not re.fullmatch(r"\d{1,18}", text, re.ASCII) or not low <= int(text) <= high:
-            raise InputError(option, text, f"a whole number from {low} to {high}")
-        return int(text)
-
-    return convert
-
-
-def as_number(text: str) -> float | str:
-    """The number a text spells, or the text itself when it spells none that is finite."""
-    try:
-        value = float(text)
-    except ValueError:
-        return text
-    return value if math.isfinite(value) and "_" not in text else text
-
-
-def _gain_setting(text: str) -> tuple[str, str]:
-    name, equals, value = text.partition("=")
-    if not (name and equals and value):
-        raise InputError("--set", text, "GAIN=VALUE, such as linear_damping=8")
-    return name, value
-
-
-def _mismatch_setting(text: str) -> tuple[str, str]:
-    name, equals, value = text.partition("=")
-    if not (name and equals and value):
-        raise InputError("--mismatch", text, "NAME=VALUE, such as mass_error=0.1")
-    return name, value
-
-
-def _directions(text: str) -> str:
-    try:
-        directions(text)
-    except InputError as error:
-        raise InputError("--controlled", text, error.allowed) from error
-    return text
-
-
 def _with_negative_numbers(words: list[str]) -> list[str]:
     """`--push -inf` as `--push=-inf`: argparse takes most negative numbers for options."""
     joined: list[str] = []
@@ -144,6 +86,7 @@ def _parser() -> _Parser:
     for name, help, add in (
         ("app", "open the lab in the browser", _app_arguments),
         ("run", "run a scenario without a screen", _run_arguments),
+        ("limit", "the largest push that is survived, by bisection", _limit_arguments),
         (
             "lesson",
             "a guided lesson: a question, a prediction, an answer that is measured",
@@ -160,6 +103,11 @@ def _parser() -> _Parser:
             _list_arguments,
         ),
         ("equations", "how exactly the chapter's equations hold on a robot", _equations_arguments),
+        (
+            "robot-check",
+            "a robot's file from its URDF, and whether the robot stands and takes a push",
+            _robot_check_arguments,
+        ),
         ("bench", "how fast the lab is on this machine", _bench_arguments),
     ):
         command: Any = commands.add_parser(name, help=help, description=f"{help[0].upper()}{help[1:]}.")
@@ -171,9 +119,11 @@ def _parser() -> _Parser:
 def _usage(command: str) -> str:
     words = {
         "run": "run SCENARIO",
+        "limit": "limit SCENARIO",
         "lesson": "lesson NAME",
         "figure": "figure NAME --out DIR",
         "list": f"list {'|'.join(KINDS)}",
+        "robot-check": "robot-check ROBOT",
     }
     return words.get(command, command)
 
@@ -200,6 +150,28 @@ def _run_arguments(parser: _Parser) -> None:
     parser.add_argument("scenario", nargs="?", default="", metavar="SCENARIO", help="a name, or a .toml file")
     _choice_arguments(parser)
     _push_arguments(parser)
+    _tuning_arguments(parser)
+    parser.add_argument("--out", metavar="FILE", help="save the trace as .npz")
+    parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+
+
+def _limit_arguments(parser: _Parser) -> None:
+    parser.add_argument("scenario", nargs="?", default="stand", metavar="SCENARIO", help="otherwise stand")
+    _choice_arguments(parser)
+    parser.add_argument(
+        "--direction",
+        type=one_or_all,
+        default=0.0,
+        metavar="D",
+        help="forward, left, backward, right, degrees from forward to the left, or all: every 45 degrees",
+    )
+    _duration_argument(parser)
+    _tuning_arguments(parser)
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _tuning_arguments(parser: _Parser) -> None:
+    """Everything about a run but who is pushed and how."""
     parser.add_argument(
         "--priority",
         type=number("--priority", 0.0, 1.0, "0 keeps linear momentum, 1 angular momentum"),
@@ -208,7 +180,7 @@ def _run_arguments(parser: _Parser) -> None:
     )
     parser.add_argument(
         "--set",
-        type=_gain_setting,
+        type=gain_setting,
         action="append",
         default=[],
         metavar="GAIN=VALUE",
@@ -220,12 +192,10 @@ def _run_arguments(parser: _Parser) -> None:
         metavar="T",
         help="how long to simulate, s",
     )
-    parser.add_argument("--engine", metavar="E", help="which physics: pinocchio")
+    parser.add_argument("--engine", metavar="E", help="which physics: pinocchio, mujoco")
     parser.add_argument(
         "--seed", type=whole_number("--seed", 0, MAX_SEED), metavar="N", help="seed of random numbers"
     )
-    parser.add_argument("--out", metavar="FILE", help="save the trace as .npz")
-    parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
 
 
 def _push_arguments(parser: _Parser) -> None:
@@ -235,12 +205,7 @@ def _push_arguments(parser: _Parser) -> None:
         metavar="N",
         help="one push of this force instead of the scenario's, N",
     )
-    parser.add_argument(
-        "--push-duration",
-        type=number("--push-duration", _ABOVE_ZERO, MAX_DURATION, "s"),
-        metavar="S",
-        help="how long it lasts, s",
-    )
+    _duration_argument(parser)
     parser.add_argument(
         "--push-direction",
         type=number("--push-direction", -360.0, 360.0, "degrees"),
@@ -249,9 +214,18 @@ def _push_arguments(parser: _Parser) -> None:
     )
     parser.add_argument(
         "--push-height",
-        type=number("--push-height", _ABOVE_ZERO, MAX_HEIGHT, "m"),
+        type=number("--push-height", ABOVE_ZERO, MAX_HEIGHT, "m"),
         metavar="M",
         help="height of its line of action, m; otherwise through the CoM",
+    )
+
+
+def _duration_argument(parser: _Parser) -> None:
+    parser.add_argument(
+        "--push-duration",
+        type=number("--push-duration", ABOVE_ZERO, MAX_DURATION, "s"),
+        metavar="S",
+        help="how long it lasts, s; 0.1 unless the scenario says otherwise",
     )
 
 
@@ -261,11 +235,11 @@ def _choice_arguments(parser: _Parser) -> None:
     parser.add_argument(
         "--controlled",
         metavar="D",
-        type=_directions,
+        type=controlled_directions,
         help="directions of momentum that are asked for: all, linear+kz, lx+ly, ...",
     )
     parser.add_argument("--planner", metavar="P", help="what makes the momentum rates that are asked for")
-    parser.add_argument("--motion", metavar="M", help="what the robot does meanwhile: kick, arm-swing")
+    parser.add_argument("--motion", metavar="M", help="what the robot does: kick, arm-swing, cat-left, ...")
     parser.add_argument(
         "--angular-goal", metavar="G", help="angular momentum asked for: zero, or reference, the motion's own"
     )
@@ -275,12 +249,12 @@ def _choice_arguments(parser: _Parser) -> None:
     parser.add_argument(
         "--friction",
         metavar="x",
-        type=number("--friction", _ABOVE_ZERO, MAX_FRICTION, "Coulomb coefficient of the floor"),
+        type=number("--friction", ABOVE_ZERO, MAX_FRICTION, "Coulomb coefficient of the floor"),
         help="Coulomb coefficient of the floor",
     )
     parser.add_argument(
         "--mismatch",
-        type=_mismatch_setting,
+        type=mismatch_setting,
         action="append",
         default=[],
         metavar="NAME=VALUE",
@@ -319,6 +293,27 @@ def _list_arguments(parser: _Parser) -> None:
 def _equations_arguments(parser: _Parser) -> None:
     parser.add_argument("--robot", default="talos", metavar="R", help="a name, or a robot's .toml file")
     parser.add_argument("--json", action="store_true", help="print a JSON array")
+
+
+def _robot_check_arguments(parser: _Parser) -> None:
+    parser.add_argument(
+        "robot", nargs="?", default="", metavar="ROBOT", help="a .urdf, a robot's .toml, or the name of one"
+    )
+    parser.add_argument(
+        "--soles",
+        type=_two_frames,
+        metavar="LEFT,RIGHT",
+        help="sole frames of a .urdf, or the links of its feet",
+    )
+    parser.add_argument("--out", metavar="FILE", help="save the proposed robot as .toml")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _two_frames(text: str) -> tuple[str, str]:
+    names = [name.strip() for name in text.split(",")]
+    if len(names) != 2 or not all(names) or names[0] == names[1]:
+        raise InputError("--soles", text, "LEFT,RIGHT: two frames of the URDF, separated by a comma")
+    return names[0], names[1]
 
 
 def _bench_arguments(parser: _Parser) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from momentum_lab.cli.arguments import as_number
+from momentum_lab.cli.values import as_number
 from momentum_lab.control.gains import with_gains
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import GainError, InputError

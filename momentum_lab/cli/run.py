@@ -16,7 +16,7 @@ from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.headless import Timing, run_headless
 from momentum_lab.provenance import provenance
 from momentum_lab.recording import save_trace, writable_file
-from momentum_lab.scenario import Scenario
+from momentum_lab.scenario import Scenario, sides
 from momentum_lab.session import Session
 from momentum_lab.summary import Summary, summarize
 
@@ -24,9 +24,10 @@ from momentum_lab.summary import Summary, summarize
 def run(args: Namespace) -> int:
     """Run a scenario, save its trace if asked to, print its summary.
 
-    A simulation that breaks down (its state is not finite any more) is reported on stderr with exit code 1;
-    what was recorded before is saved and summarized, as a fall. Ctrl+C saves what there is and prints no
-    summary.
+    A scenario with two robots is run for both; the trace is the first one's, and so is the summary, which holds
+    that of the other. A simulation that breaks down (its state is not finite any more) is reported on stderr
+    with exit code 1; what was recorded before is saved and summarized, as a fall. Ctrl+C saves what there is and
+    prints no summary.
 
     Raises:
         InputError: something that was typed cannot be used.
@@ -35,7 +36,7 @@ def run(args: Namespace) -> int:
     """
     scenario = chosen_scenario(args)
     out = None if args.out is None else writable_file(Path(args.out))
-    session = _session(scenario)
+    session, *beside = [_session(side) for side in sides(scenario)]
     for push in scenario.pushes:
         if push.start >= scenario.seconds:
             _note(f"the push at {push.start:g} s comes after the end of the run at {scenario.seconds:g} s")
@@ -47,24 +48,47 @@ def run(args: Namespace) -> int:
     if stopped:
         raise KeyboardInterrupt
     summary = summarize(session, timing)
+    for other in beside:
+        summary = msgspec.structs.replace(summary, beside=_beside(other, out))
     if args.json:
         print(msgspec.json.encode(summary).decode())
     else:
         show(summary, out)
-    if timing.error is None:
-        return 0
-    _note(timing.error)
-    return 1
+    errors = [each.error for each in (summary, summary.beside) if each is not None and each.error is not None]
+    for error in errors:
+        _note(error)
+    return 1 if errors else 0
 
 
 def show(summary: Summary, out: Path | None) -> None:
     """The summary for people, on stdout."""
     table = Table(title=f"{summary.scenario}: {summary.robot}, {summary.controller}", show_header=False)
-    for label, text in _lines(summary):
-        table.add_row(label, text)
+    robots = [summary] if summary.beside is None else [summary, summary.beside]
+    for lines in zip(*map(_lines, robots), strict=True):
+        table.add_row(lines[0][0], *(text for _, text in lines))
+    if summary.beside is not None:
+        table.add_row("controller", *(each.controller for each in robots))
+        table.add_row("priority", *(f"{each.priority:g}" for each in robots))
     Console(markup=False).print(table)
     if out is not None:
         print(f"trace: {out}")
+
+
+def _beside(session: Session, out: Path | None) -> Summary:
+    """Run the robot beside the first one.
+
+    Raises:
+        SimulationError: the simulation broke down before its first sample.
+        KeyboardInterrupt: Ctrl+C.
+    """
+    if out is not None:
+        _note(f"{out} holds the first robot; the one beside it is in the summary only")
+    timing, stopped = _timed(session)
+    if timing.error is not None and not len(session.recording):
+        raise SimulationError(timing.error)
+    if stopped:
+        raise KeyboardInterrupt
+    return summarize(session, timing)
 
 
 def _note(text: str) -> None:

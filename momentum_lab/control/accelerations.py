@@ -7,7 +7,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from momentum_lab.control.acceleration_terms import BEFORE_THE_STOP, acceleration_program, standing_feet
+from momentum_lab.control.acceleration_program import acceleration_program
+from momentum_lab.control.acceleration_terms import BEFORE_THE_STOP, standing_feet
 from momentum_lab.control.controller import Reference
 from momentum_lab.control.foot_forces import FootForces
 from momentum_lab.control.qp import QuadraticProgram, solve

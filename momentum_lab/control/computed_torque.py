@@ -11,7 +11,7 @@ from momentum_lab.control import common_gains
 from momentum_lab.control.accelerations import AccelerationProgram, MotionWeights
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_momentum_rate
-from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture, without_ground
+from momentum_lab.control.fallback import NO_FOOT, hold_posture, in_words, without_ground
 from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds, StanceFeet
 from momentum_lab.control.gains import gain
 from momentum_lab.control.planner import OWN, PLANNERS, Support
@@ -121,7 +121,7 @@ class ComputedTorque:
         desired = self._desired_rate(dynamics, reference, gains)
         carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.ground)
         if not carrying:
-            return self._fallback(dynamics, reference, desired, "no foot is on the ground")
+            return self._fallback(dynamics, reference, desired, NO_FOOT)
         stance = self.footing.stance_feet(dynamics, carrying, gains.safe_border)
         if reference.planner != OWN:
             support = Support(self.robot.mass, stance.safe_polygon, stance.height)
@@ -236,9 +236,9 @@ class ComputedTorque:
         nothing = without_ground(self.robot, dynamics, self.initial_memory(dynamics))
         return replace(
             nothing,
-            torque=hold_posture(self.robot, dynamics, reference.posture),
+            torque=hold_posture(self.robot, dynamics, reference),
             momentum_rate_desired=desired,
-            failure=f"{reason}; {HOLD_IN_WORDS}",
+            failure=in_words(reference, reason),
         )
 
 

@@ -17,6 +17,21 @@ SLACKS = ("com x", "com y", "com z", "pelvis x", "pelvis y", "pelvis z", "swing 
 
 
 @dataclass(frozen=True, slots=True)
+class JointMotion:
+    """What the joints do at an instant.
+
+    Attributes:
+        angle: (na,), rad.
+        rate: (na,), rad/s.
+        acceleration: (na,), rad/s^2.
+    """
+
+    angle: np.ndarray
+    rate: np.ndarray
+    acceleration: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
 class Reference:
     """What the robot shall do; F is the number of feet.
 
@@ -34,6 +49,7 @@ class Reference:
         controlled: which of l_x, l_y, l_z, k_x, k_y, k_z are asked for; the others are left free
             (section 5.3.1).
         planner: what makes the rates that are asked for out of Eqs. 37 and 38, a row of Table 1.
+        in_the_air: what the joints do while no foot is on the ground; None: they keep the posture.
     """
 
     com: np.ndarray
@@ -48,6 +64,7 @@ class Reference:
     planner: str = "momentum"
     posture_rate: np.ndarray | None = None
     angular_momentum_rate: np.ndarray | None = None
+    in_the_air: JointMotion | None = None
 
     def posture_ahead(self, time: float) -> np.ndarray:
         """The posture so much later if it keeps its rate (na,), rad.

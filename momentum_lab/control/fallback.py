@@ -1,4 +1,4 @@
-"""Torques for when there is no control law to follow."""
+"""Torques for when there is no control law to follow: in the air, after a failed solve, after a fall."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from momentum_lab.control.controller import ControlOutput, Reference
+from momentum_lab.control.controller import ControlOutput, JointMotion, Reference
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
@@ -18,16 +18,44 @@ _FULL_TORQUE_ANGLE = 0.3
 _DAMPING_TIME = 0.05
 
 HOLD_IN_WORDS = "holding the posture with joint springs"
+NO_FOOT = "no foot is on the ground"
 
 
-def hold_posture(robot: RobotModel, dynamics: Dynamics, posture: np.ndarray) -> np.ndarray:
+def in_words(reference: Reference, reason: str) -> str | None:
+    """Why the posture is held; None in the air, for a reference that is made for it: then nothing has failed."""
+    if reason == NO_FOOT and reference.in_the_air is not None:
+        return None
+    return f"{reason}; {HOLD_IN_WORDS}"
+
+
+def hold_posture(robot: RobotModel, dynamics: Dynamics, reference: Reference) -> np.ndarray:
     """Springs and dampers at the joints (na,), N m: the torque of a tick whose controller has no answer.
 
-    tau = k (theta_0 - theta) - d theta', with k the torque limit over 0.3 rad and d = 0.05 s k.
+    tau = k (theta_d - theta) + d (theta_d' - theta'), with k the torque limit over 0.3 rad and d = 0.05 s k. What
+    the reference has for the air is a motion that nothing but the joints can cause: there they do it.
     """
+    if reference.in_the_air is not None:
+        return follow_in_the_air(robot, dynamics, reference.in_the_air)
+    return _springs(robot, dynamics, reference.posture_ahead(_DAMPING_TIME))
+
+
+def follow_in_the_air(robot: RobotModel, dynamics: Dynamics, motion: JointMotion) -> np.ndarray:
+    """Torques (na,), N m, for joints that move as told while nothing outside holds the robot.
+
+    With a = (a_b, theta_d''), H_bb a_b = -H_bj theta_d'' - (C v + tau_g)_b says how the free base gives way, and
+    tau = (H a + C v + tau_g)_j takes it into account; springs and dampers correct what remains.
+    """
+    mass_matrix, other = dynamics.mass_matrix, dynamics.nonlinear_effects
+    base = np.linalg.solve(mass_matrix[:6, :6], -mass_matrix[:6, 6:] @ motion.acceleration - other[:6])
+    needed = mass_matrix[6:, :6] @ base + mass_matrix[6:, 6:] @ motion.acceleration + other[6:]
+    return np.asarray(needed + _springs(robot, dynamics, motion.angle + _DAMPING_TIME * motion.rate))
+
+
+def _springs(robot: RobotModel, dynamics: Dynamics, ahead: np.ndarray) -> np.ndarray:
+    """Springs and dampers towards the angles that the joints shall have 0.05 s later (na,), N m."""
     stiffness = robot.effort_limit / _FULL_TORQUE_ANGLE
     state = dynamics.state
-    return stiffness * (posture - state.q[7:] - _DAMPING_TIME * state.v[6:])
+    return np.asarray(stiffness * (ahead - state.q[7:] - _DAMPING_TIME * state.v[6:]))
 
 
 def hold(
@@ -36,8 +64,8 @@ def hold(
     """The answer of a controller that has none: the posture held by joint springs, and why."""
     return replace(
         without_ground(robot, dynamics, memory),
-        torque=hold_posture(robot, dynamics, reference.posture),
-        failure=f"{reason}; {HOLD_IN_WORDS}",
+        torque=hold_posture(robot, dynamics, reference),
+        failure=in_words(reference, reason),
     )
 
 

@@ -14,12 +14,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from momentum_lab.control.foot_places import near_the_ground, placed_feet
 from momentum_lab.control.foot_programs import (
     cop_program,
     foot_wrenches,
     force_program,
-    near_the_ground,
-    placed_feet,
     quiet_share,
 )
 from momentum_lab.control.qp import CERTIFIED, QuadraticProgram, solve

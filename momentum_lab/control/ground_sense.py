@@ -14,28 +14,22 @@ GroundSense = Literal["told", "felt"]
 GROUND_SENSES: tuple[GroundSense, ...] = get_args(GroundSense)
 
 
-def sensed(sense: GroundSense, dynamics: Dynamics, ground: FootGround) -> FootGround:
-    """The ground as the robot takes it to be.
+def felt_ground(dynamics: Dynamics, pressed: np.ndarray, before: FootGround) -> FootGround:
+    """The ground that soles feel: where a pressed sole is, there is a plate, as it lies and as fast as it is.
 
-    Told: pose, velocity and acceleration of every plate, the v_c and dv_c of Eqs. 27 and 31; a robot that knows
-    when the bus brakes. Felt: a plate is where a sole is, as it lies and as fast as it is, and is not expected to
-    speed up; a robot that trusts its soles.
+    It is not expected to speed up. Under a sole that nothing presses, the plate is taken to be at rest where it
+    was felt last.
 
     Args:
-        sense: told or felt.
         dynamics: the state with everything computed.
-        ground: the plates as they are.
+        pressed: whether the force sensor of each foot feels the ground (F,).
+        before: what was felt before.
     """
-    if sense == "told":
-        return ground
-    velocity = dynamics.sole_jacobian @ dynamics.state.v
-    return FootGround(
-        dynamics.sole_position,
-        dynamics.sole_rotation,
-        velocity,
-        np.zeros_like(velocity),
-        float(dynamics.sole_position[:, 2].mean()),
-    )
+    velocity = np.where(pressed[:, None], dynamics.sole_jacobian @ dynamics.state.v, 0.0)
+    position = np.where(pressed[:, None], dynamics.sole_position, before.position)
+    rotation = np.where(pressed[:, None, None], dynamics.sole_rotation, before.rotation)
+    known = position[pressed] if pressed.any() else position
+    return FootGround(position, rotation, velocity, np.zeros_like(velocity), float(known[:, 2].mean()))
 
 
 def ground_sense(name: str) -> GroundSense:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.wrench import wrench_shift_map
 from momentum_lab.robot.model import RobotModel
@@ -16,17 +17,18 @@ _SOFTNESS = 1e-9
 
 
 def motion_of_held_feet(
-    dynamics: Dynamics, torque: np.ndarray, stance: tuple[int, ...]
+    dynamics: Dynamics, torque: np.ndarray, stance: tuple[int, ...], ground: FootGround
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Accelerations and foot wrenches that torques cause while the stance feet keep their velocity.
+    """Accelerations and foot wrenches that torques cause while the stance feet speed up like their plates.
 
-    H a + C v + tau_g = S^T tau + J_c^T f_c (Eq. 28) with J_c a + dJ_c v = 0 (Eq. 31). Nothing keeps the wrenches
+    H a + C v + tau_g = S^T tau + J_c^T f_c (Eq. 28) with J_c a + dJ_c v = dv_c (Eq. 31). Nothing keeps the wrenches
     within the friction cone, or the CoP within the soles.
 
     Args:
         dynamics: the state with everything computed.
         torque: joint torques tau (na,), N m.
         stance: the feet, as indices.
+        ground: the plates under the feet.
 
     Returns:
         a (nv,), and the wrenches about the sole origins, world axes (F, 6), N and N m; zero for other feet.
@@ -41,7 +43,8 @@ def motion_of_held_feet(
     system[size:, size:].flat[:: rows + 1] = _SOFTNESS
     force = -dynamics.nonlinear_effects
     force[6:] += torque
-    answer = np.linalg.solve(system, np.concatenate([force, -dynamics.sole_bias[feet].ravel()]))
+    wanted = ground.carried_acceleration(dynamics.sole_position)[feet] - dynamics.sole_bias[feet]
+    answer = np.linalg.solve(system, np.concatenate([force, wanted.ravel()]))
     wrench = np.zeros((len(dynamics.sole_position), 6))
     wrench[feet] = answer[size:].reshape(-1, 6)
     return answer[:size], wrench

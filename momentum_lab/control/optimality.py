@@ -31,7 +31,8 @@ def minimum_on_equalities(
         upper: likewise; rows of A and b are where both are equal.
 
     Returns:
-        x (n,) and multipliers (n + m,); NaN if P or A P^-1 A^T is singular.
+        x (n,) and multipliers (n + m,); NaN if P or A P^-1 A^T is found not to be positive definite. Rounding can
+        hide that rows of A depend on each other; the primal residual tells.
     """
     size = gradient.size
     x, multipliers = np.full(size, np.nan), np.zeros(lower.size)

@@ -27,7 +27,7 @@ def middle_of(sole: Sole) -> np.ndarray:
 
 def placo_body(robot: RobotModel) -> placo.RobotWrapper:
     """The robot in PlaCo; joints, masses, rotor inertias, limits and the order of q and v are those of `robot`."""
-    root = bare_urdf(robot.urdf, robot.spec.feet)
+    root = bare_urdf(robot.urdf, robot.spec)
     for sole in robot.soles:
         add_fixed_link(root, middle_frame(sole), robot.spec.feet[sole.name].frame, middle_of(sole).tolist())
     urdf = ET.tostring(root, encoding="unicode")

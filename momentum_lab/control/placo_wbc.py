@@ -9,7 +9,7 @@ import numpy as np
 from momentum_lab.control import common_gains
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_linear_rate
-from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture, without_ground
+from momentum_lab.control.fallback import NO_FOOT, hold_posture, in_words, without_ground
 from momentum_lab.control.foot_forces import Footing
 from momentum_lab.control.gains import gain
 from momentum_lab.control.placo_tasks import Law, PlacoTasks, TaskLaws
@@ -75,7 +75,7 @@ class PlacoWbc:
             self.robot.mass, dynamics, reference, gains.com_damping, gains.com_stiffness
         )
         if not carrying:
-            return self._fallback(dynamics, reference, linear, "no foot is on the ground")
+            return self._fallback(dynamics, reference, linear, NO_FOOT)
         if carrying not in self._tasks:
             self._tasks[carrying] = PlacoTasks(self.robot, carrying, self.timestep)
         try:
@@ -104,9 +104,9 @@ class PlacoWbc:
         """The posture held by joint springs, and why; nothing is asked of the ground."""
         return replace(
             without_ground(self.robot, dynamics, None),
-            torque=hold_posture(self.robot, dynamics, reference.posture),
+            torque=hold_posture(self.robot, dynamics, reference),
             momentum_rate_desired=np.concatenate([linear, np.zeros(3)]),
-            failure=f"{reason}; {HOLD_IN_WORDS}",
+            failure=in_words(reference, reason),
         )
 
 

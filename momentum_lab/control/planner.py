@@ -14,7 +14,7 @@ import numpy as np
 
 from momentum_lab.control.controller import Reference
 from momentum_lab.errors import InputError
-from momentum_lab.momentum.ground import cmp_from_force, ground_reaction_force
+from momentum_lab.momentum.ground import GRAVITY, cmp_from_force, ground_reaction_force
 from momentum_lab.momentum.pendulum import capture_point
 from momentum_lab.momentum.polygon import closest_in_polygon
 from momentum_lab.robot.state import Dynamics
@@ -58,18 +58,22 @@ class Planner:
 def planned_cop(dynamics: Dynamics, reference: Reference, support: Support, shift: np.ndarray) -> np.ndarray:
     """The CoP that brings the capture point back, as near as the support polygon allows.
 
-    p_d = xi + c (xi - r_d) + shift, then the closest point of the polygon.
+    p_d = xi + c (xi - r_d) - ddr_d / omega^2 + shift, then the closest point of the polygon; xi = r + (dr - dr_d) /
+    omega, so that the CoM rides with a goal that moves.
 
     Args:
         dynamics: the state with everything computed.
-        reference: holds r_d, m.
+        reference: holds r_d, m, and how it moves.
         support: where the CoP may be.
         shift: how far it shall be moved for the sake of angular momentum (2,), m.
 
     Returns:
         p_d (2,), m.
     """
-    capture = capture_point(dynamics.com_in_world, dynamics.com_velocity, support.height)
+    height = dynamics.com_in_world[2] - support.height
+    velocity = dynamics.com_velocity - reference.com_velocity
+    capture = capture_point(dynamics.com_in_world, velocity, support.height)
+    shift = shift - reference.com_acceleration[:2] * height / GRAVITY
     wanted = capture + _CAPTURE_GAIN * (capture - reference.com[:2]) + shift
     return closest_in_polygon(wanted, support.polygon)
 

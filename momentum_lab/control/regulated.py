@@ -31,7 +31,7 @@ class RegulatedMomentum:
         self._known: tuple[tuple[bytes, tuple[int, ...]], OperatingPoint] | None = None
 
     def rate(self, dynamics: Dynamics, reference: Reference, costs: LqrCosts) -> np.ndarray:
-        """[dl_d; dk_d] (6,), N and N m: the last rows of (A - B K) (r - r_d, l - l_d, k - k_d)."""
+        """[dl_d; dk_d] (6,), N and N m: the last rows of (A - B K) (r - r_d, l - l_d, k - k_d), and m ddr_d."""
         point = self.operating_point(reference.posture, reference.stance)
         forward = dynamics.sole_rotation[reference.stance[0], :, 0]
         turn = pin.utils.rotate("z", math.atan2(forward[1], forward[0]))
@@ -43,7 +43,9 @@ class RegulatedMomentum:
             ]
         )
         rate = momentum_feedback(point, costs)[3:] @ (error @ turn).ravel()
-        return (rate.reshape(2, 3) @ turn.T).ravel()
+        rate = (rate.reshape(2, 3) @ turn.T).ravel()
+        rate[:3] += self._robot.mass * reference.com_acceleration
+        return rate
 
     def operating_point(self, posture: np.ndarray, stance: tuple[int, ...]) -> OperatingPoint:
         """Where the stance soles are when the joints are at `posture` (na,) and the CoM is above their middle."""

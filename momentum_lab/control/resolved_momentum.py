@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from momentum_lab.control.controller import ControlOutput, Reference
-from momentum_lab.control.fallback import HOLD_IN_WORDS, hold_posture, without_ground
+from momentum_lab.control.fallback import NO_FOOT, hold_posture, in_words, without_ground
 from momentum_lab.control.foot_forces import Footing
 from momentum_lab.control.gains import gain
 from momentum_lab.control.held_feet import holding_torque, motion_of_held_feet, weight_on_feet
@@ -118,7 +118,7 @@ class ResolvedMomentum:
         """
         carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.ground)
         if not carrying:
-            return self._fallback(dynamics, reference, memory, "no foot is on the ground")
+            return self._fallback(dynamics, reference, memory, NO_FOOT)
         try:
             command = self._next_set_point(dynamics, reference, gains, memory)
         except SolverError as error:
@@ -128,7 +128,7 @@ class ResolvedMomentum:
             dynamics, weight_on_feet(self.robot, dynamics, carrying)
         )
         torque = np.clip(torque, -self.robot.effort_limit, self.robot.effort_limit)
-        acceleration, wrench = motion_of_held_feet(dynamics, torque, carrying)
+        acceleration, wrench = motion_of_held_feet(dynamics, torque, carrying, reference.ground)
         rate = momentum_rate(dynamics, acceleration)
         height = float(dynamics.sole_position[list(carrying), 2].mean())
         cop = cop_from_momentum_rate(rate, dynamics.com_in_world, self.robot.mass, height)
@@ -208,8 +208,8 @@ class ResolvedMomentum:
         nothing = without_ground(self.robot, dynamics, memory)
         return replace(
             nothing,
-            torque=hold_posture(self.robot, dynamics, reference.posture),
-            failure=f"{reason}; {HOLD_IN_WORDS}",
+            torque=hold_posture(self.robot, dynamics, reference),
+            failure=in_words(reference, reason),
         )
 
 

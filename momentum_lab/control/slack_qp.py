@@ -8,7 +8,7 @@ import numpy as np
 
 from momentum_lab.control import common_gains
 from momentum_lab.control.controller import ControlOutput, Reference
-from momentum_lab.control.fallback import hold
+from momentum_lab.control.fallback import NO_FOOT, hold
 from momentum_lab.control.foot_forces import Footing
 from momentum_lab.control.gains import gain
 from momentum_lab.control.outputs import (
@@ -102,7 +102,7 @@ class SlackQP:
         """
         carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.ground)
         if not carrying:
-            return hold(self.robot, dynamics, reference, "no foot is on the ground", memory)
+            return hold(self.robot, dynamics, reference, NO_FOOT, memory)
         outputs = self._outputs(dynamics, reference, gains, priority)
         motion = stance_motion(dynamics, reference, carrying, gains.contact_damping)
         program = self._program(reference.stance, carrying)

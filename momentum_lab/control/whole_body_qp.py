@@ -13,7 +13,7 @@ import numpy as np
 from momentum_lab.control import common_gains
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_angular_rate, desired_linear_rate
-from momentum_lab.control.fallback import hold
+from momentum_lab.control.fallback import NO_FOOT, hold
 from momentum_lab.control.foot_forces import Footing
 from momentum_lab.control.gains import gain
 from momentum_lab.control.momentum_lqr import LqrCosts
@@ -121,7 +121,7 @@ class WholeBodyQP:
         """
         carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.ground)
         if not carrying:
-            return hold(self.robot, dynamics, reference, "no foot is on the ground", memory)
+            return hold(self.robot, dynamics, reference, NO_FOOT, memory)
         desired = self.desired_rate(dynamics, reference, gains)
         if reference.planner != OWN:
             stance = self.footing.stance_feet(dynamics, carrying, gains.safe_border)

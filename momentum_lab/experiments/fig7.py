@@ -22,7 +22,7 @@ from momentum_lab.experiments.claims import (
 from momentum_lab.experiments.measured import com_moved, push_start, rate_gap, saturated, times, upright
 from momentum_lab.experiments.sticks import SIDE, snapshot
 from momentum_lab.momentum.ground import GRAVITY
-from momentum_lab.scenario import Scenario, changed
+from momentum_lab.scenario import Scenario, sides
 from momentum_lab.session import Session
 
 LINEAR, ANGULAR = "priority 0", "priority 1"
@@ -33,9 +33,8 @@ _LATER = 0.6
 
 
 def scenarios(robot: str | None) -> dict[str, Scenario]:
-    """The same run with either priority."""
-    scenario = chosen("fig7", robot)
-    return {LINEAR: changed(scenario, priority=0.0), ANGULAR: changed(scenario, priority=1.0)}
+    """The same run with either priority: the two robots of the scenario."""
+    return dict(zip((LINEAR, ANGULAR), sides(chosen("fig7", robot)), strict=True))
 
 
 def claims(runs: Runs) -> list[Claim]:

@@ -22,6 +22,7 @@ from momentum_lab.experiments.canvas import (
 )
 from momentum_lab.experiments.choice import chosen
 from momentum_lab.experiments.claims import Claim, Columns, Figure, Runs, at_least, at_most, largest, stands
+from momentum_lab.experiments.felt_push import cop_with_the_push, off_the_push
 from momentum_lab.experiments.measured import (
     foot_cops,
     ground_force,
@@ -37,6 +38,8 @@ from momentum_lab.session import Session
 
 _MM = 1e3
 _X, _Y = 0, 4
+# Corners of the soles sink in by some micrometres, which moves the edge, m.
+_EDGE = 1e-5
 _RATE_LABELS = {"measured": "measured, push included"}
 
 
@@ -57,9 +60,13 @@ def claims(runs: Runs) -> list[Claim]:
     linear = largest(gap[:, :3]) / weight
     granted = foot_cops(session, "foot_wrench_admissible")[:, :, _X]
     difference = np.abs(granted - session.recording.column("foot_cop_measured")[:, :, _X])
-    # The controller does not know the push: while it lasts, the measured CoP may go from the safe border to the
-    # very edge, which is the border's width, and a sole that tips and lands leaves a tick or two behind.
-    within = np.mean(difference[clock < push_end(session) + 0.5] <= session.gains.safe_border)
+    # The controller does not know the push: while it lasts, the measured CoP is off by what joints with inertia pass
+    # on of it to the soles (1.5 mm for TALOS, 9 mm for iCub with its heavy rotors). Behind it the CoP comes back
+    # from the very edge, a border's width away; a sole that tips and lands leaves a tick or two behind.
+    quick = (clock < push_start(session)) | (clock > push_end(session))
+    within = np.mean(
+        difference[quick & (clock < push_end(session) + 0.5)] <= session.gains.safe_border + _EDGE
+    )
     return [
         stands("the robot", session),
         at_most(
@@ -81,7 +88,18 @@ def claims(runs: Runs) -> list[Claim]:
         ),
         at_most("and only then", largest(gap[~outside][:, 3:5]) / weight, 2e-4, "m"),
         at_least("the body takes the spin of the push: k_y", _spin(session), 0.0, "N m s"),
-        at_least("the measured foot CoP follows it within the border's width", within, 0.95, "of the ticks"),
+        at_most(
+            "pushed, with flat soles, the measured foot CoP is where the push moves it, within",
+            _MM * off_the_push(session),
+            0.5,
+            "mm",
+        ),
+        at_least(
+            "without a push it follows the admissible one within the border's width",
+            within,
+            0.95,
+            "of the ticks",
+        ),
     ]
 
 
@@ -111,6 +129,7 @@ def table(runs: Runs) -> Columns:
     session = runs["push"]
     column = session.recording.column
     measured, granted = column("foot_cop_measured"), foot_cops(session, "foot_wrench_admissible")
+    moved = cop_with_the_push(session)
     names = ("desired", "admissible", "measured")
     return {
         "time [s]": times(session),
@@ -123,6 +142,7 @@ def table(runs: Runs) -> Columns:
         **{f"dk_y {name} [N m]": column(f"momentum_rate_{name}")[:, _Y] for name in names},
         **{f"CoP x of {f} foot, measured [m]": measured[:, i, 0] for i, f in enumerate(_feet(session))},
         **{f"CoP x of {f} foot, admissible [m]": granted[:, i, 0] for i, f in enumerate(_feet(session))},
+        **{f"CoP x of {f} foot, with the push [m]": moved[:, i] for i, f in enumerate(_feet(session))},
     }
 
 
@@ -189,6 +209,8 @@ def _foot(axes: Any, session: Session, data: Columns, letter: str, foot: str) ->
     )
     granted = _MM * np.asarray(data[f"CoP x of {foot} foot, admissible [m]"])
     axes.plot(clock, granted, "--", color=GRANTED, label="admissible")
+    moved = _MM * np.asarray(data[f"CoP x of {foot} foot, with the push [m]"])
+    axes.plot(clock, moved, ":", color=CHANGED, lw=2.0, label="admissible, moved by the push")
     for edge, inward in ((sole.upper[0], -border), (sole.lower[0], border)):
         axes.axhline(_MM * (edge + inward), ls=":", color=INK, lw=1.0, label="safe border")
         axes.axhline(_MM * edge, color=MUTED, lw=1.0, label="edge of the sole")
@@ -198,7 +220,8 @@ def _foot(axes: Any, session: Session, data: Columns, letter: str, foot: str) ->
         "",
         "x [mm]",
         loc="lower right",
-        bbox_to_anchor=(1.0, 0.12),
+        bbox_to_anchor=(1.0, 0.1),
+        ncols=2,
     )
 
 

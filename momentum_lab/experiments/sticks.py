@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
-from momentum_lab.experiments.canvas import CMP, COM, COP, FORCE, INK, MUTED, label
+from momentum_lab.experiments.canvas import CMP, COM, COP, FORCE, INK, MUTED, finish, label
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.session import Session
 
@@ -81,3 +82,16 @@ def snapshot(axes: Any, session: Session, tick: int, view: int, title: str) -> N
     height = lowest + 1.9 * (float(start[2]) - lowest)
     axes.set_xlim(start[view] - 0.48 * height, start[view] + 0.48 * height)
     axes.set_ylim(-0.05 * height, height)
+
+
+def from_above(axes: Any, session: Session, moments: Mapping[str, tuple[int, str]], title: str) -> None:
+    """The robot seen from above at some ticks, by name with a colour each, x up the page and y to the left."""
+    for name, (tick, color) in moments.items():
+        for line in bones(session, tick):
+            axes.plot(line[:, 1], line[:, 0], "-", color=color, lw=2.0, solid_capstyle="round")
+        for corners in soles(session, tick):
+            around = corners[[0, 1, 2, 3, 0]]
+            axes.plot(around[:, 1], around[:, 0], color=color, lw=3.0, label=name)
+    axes.set_aspect("equal")
+    axes.invert_xaxis()
+    finish(axes, title, "y [m]", "x [m]")

@@ -36,6 +36,11 @@ class FootGround:
         rest = np.zeros((len(position), 6))
         return cls(position, rotation, rest, rest, float(position[:, 2].mean()))
 
+    def carried_acceleration(self, points: np.ndarray) -> np.ndarray:
+        """Accelerations of frames at points (F, 3), m, that the plates carry along (F, 6), m/s^2 and rad/s^2."""
+        plates = zip(points, self.position, self.velocity, self.acceleration, strict=True)
+        return np.array([acceleration_at(*plate) for plate in plates])
+
     @classmethod
     def level(cls, feet: int, height: float = 0.0) -> FootGround:
         """One level floor at a height (m) under so many feet."""

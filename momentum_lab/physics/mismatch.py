@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Annotated, Any, get_type_hints
 
 import msgspec
@@ -113,11 +114,14 @@ def changes(before: Mismatch, after: Mismatch) -> list[tuple[str, float]]:
 
 def real_robot(believed: RobotModel, mismatch: Mismatch) -> RobotModel:
     """The robot that is simulated where the controller believes in another; that one itself if they are alike."""
-    if mismatch == EXACT:
-        return believed
-    return believed.altered(
-        inertia=1.0 + mismatch.mass_error, effort=mismatch.torque_scale, friction=mismatch.joint_friction
-    )
+    differences = 1.0 + mismatch.mass_error, mismatch.torque_scale, mismatch.joint_friction
+    return believed if differences == (1.0, 1.0, 0.0) else _altered(believed, *differences)
+
+
+@lru_cache(maxsize=4)
+def _altered(believed: RobotModel, inertia: float, effort: float, friction: float) -> RobotModel:
+    """Worlds are built anew often, and always for the same few robots."""
+    return believed.altered(inertia, effort, friction)
 
 
 def _declared(name: str, meta: Any) -> ModelError:

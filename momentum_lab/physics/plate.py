@@ -10,6 +10,7 @@ MAX_TILT = 15.0
 MAX_HEIGHT = 0.2
 MAX_SWING = 0.3
 MAX_TURN = 15.0
+MAX_MOTIONS = 32
 MAX_FRICTION = 2.0
 MAX_START = 3600.0
 MIN_PERIOD, MAX_PERIOD = 0.2, 60.0
@@ -45,6 +46,11 @@ class PlateMotion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     start: Start = 0.5
     stop: Start | None = None
 
+    @property
+    def turns(self) -> bool:
+        """Whether it is an angle."""
+        return self.axis in ("roll", "pitch")
+
 
 class FrictionChange(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Ice, or sand: another friction from an instant on.
@@ -61,7 +67,8 @@ class FrictionChange(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Plate(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The ground under some of the feet.
 
-    It turns about the middle of the places of its feet, where they are on level ground.
+    It turns about the middle of the places of its feet, where they are on level ground. Everything but the soles
+    meets the level floor.
 
     Attributes:
         feet: which feet; empty: all of them on one plate.

@@ -7,22 +7,29 @@ import math
 import numpy as np
 
 from momentum_lab.compiled import compiled
+from momentum_lab.momentum.wrench import cross
 from momentum_lab.physics.plate import AXES, PlateMotion
 
 _MATRIX, _VECTOR, _STACK = "f8[:, ::1]", "f8[::1]", "f8[:, :, ::1]"
-_ROLL, _PITCH = AXES.index("roll"), AXES.index("pitch")
 
 
-def course_row(foot: int, motion: PlateMotion) -> tuple[float, ...]:
+def course_row(foot: int, motion: PlateMotion, pivot: np.ndarray) -> tuple[float, ...]:
     """A motion of the plate under a foot as numbers.
 
-    Foot, axis, 1 for a step, amplitude (m or rad), period, start and stop (s, infinite if there is none).
+    Foot, axis, 1 for a step, amplitude (m or rad), period, start and stop (s, infinite if there is none), and the
+    pivot (3,), m, that a turn leaves where it is.
     """
-    turning = motion.axis in ("roll", "pitch")
-    amplitude = math.radians(motion.amplitude) if turning else motion.amplitude
-    step = float(motion.course == "step")
-    stop = math.inf if motion.stop is None else motion.stop
-    return float(foot), float(AXES.index(motion.axis)), step, amplitude, motion.period, motion.start, stop
+    amplitude = math.radians(motion.amplitude) if motion.turns else motion.amplitude
+    return (
+        float(foot),
+        float(AXES.index(motion.axis)),
+        float(motion.course == "step"),
+        amplitude,
+        motion.period,
+        motion.start,
+        math.inf if motion.stop is None else motion.stop,
+        *pivot.tolist(),
+    )
 
 
 @compiled("UniTuple(f8, 3)(f8)")
@@ -50,7 +57,7 @@ def course(row: np.ndarray, time: float) -> tuple[float, float, float]:
     A s(t / T) (1 - s(1 - (t_end - t) / T)) sin(w t) with w = 2 pi / T and the ease s; A s(t / T) for a step.
 
     Args:
-        row: see `course_row` (7,).
+        row: see `course_row` (10,).
         time: of the run, s.
     """
     step, amplitude, period, start = row[2], row[3], row[4], row[5]
@@ -73,30 +80,12 @@ def course(row: np.ndarray, time: float) -> tuple[float, float, float]:
     )
 
 
-@compiled(f"Tuple(({_MATRIX}, {_VECTOR}, {_VECTOR}))(f8, f8, f8, f8, f8, f8)")
-def turned(
-    roll: float, pitch: float, roll_rate: float, pitch_rate: float, roll_growth: float, pitch_growth: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """R_y(pitch) R_x(roll) (3, 3), its angular velocity (3,), rad/s, and angular acceleration (3,), rad/s^2.
-
-    omega = pitch' e_y + roll' u with u = R_y(pitch) e_x, and alpha = pitch'' e_y + roll'' u + pitch' roll' e_y x u.
-
-    Args:
-        roll: rad.
-        pitch: rad.
-        roll_rate: rad/s.
-        pitch_rate: rad/s.
-        roll_growth: rad/s^2.
-        pitch_growth: rad/s^2.
-    """
-    cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
-    rotation = np.array(((cp, sp * sr, sp * cr), (0.0, cr, -sr), (-sp, cp * sr, cp * cr)))
-    both = pitch_rate * roll_rate
-    return (
-        rotation,
-        np.array((roll_rate * cp, pitch_rate, -roll_rate * sp)),
-        np.array((roll_growth * cp - both * sp, pitch_growth, -roll_growth * sp - both * cp)),
-    )
+@compiled(f"{_MATRIX}({_VECTOR}, f8)")
+def turn_about(axis: np.ndarray, angle: float) -> np.ndarray:
+    """Rotation (3, 3) about a unit vector (3,) by an angle, rad: 1 + sin S(a) + (1 - cos) S(a)^2."""
+    x, y, z = axis
+    skew = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
+    return np.eye(3) + math.sin(angle) * skew + (1.0 - math.cos(angle)) * (skew @ skew)
 
 
 @compiled(
@@ -107,38 +96,40 @@ def moved_plates(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Points, axes, velocities and accelerations of plates at a time, as in `FootGround`.
 
-    o(t) = o_0 + F (x, y, z), R(t) = F R_y(pitch) R_x(roll) F^T R_0.
+    One motion after the other carries the plate on: a way d along an axis adds d, d', d''; a turn A by an angle
+    theta about an axis a through a pivot c, with w = theta' a and r = A (o - c), makes
+
+        o = c + r,  v = A v + w x r,  dv = A dv + theta'' a x r + w x (w x r) + 2 w x A v,
+        R = A R,  omega = A omega + w,  domega = A domega + theta'' a + w x A omega.
 
     Args:
-        position: o_0, where the plates' points are before anything moves (F, 3), m.
-        rotation: R_0, axes of the plates then (F, 3, 3).
-        facing: F, axes in which the motions are given (3, 3).
-        courses: one row per motion, see `course_row` (M, 7).
+        position: where the plates' points are before anything moves (F, 3), m.
+        rotation: axes of the plates then (F, 3, 3).
+        facing: axes x, y, z of the motions as columns (3, 3).
+        courses: one row per motion, turns before ways, so that pivots ride along; see `course_row` (M, 10).
         time: of the run, s.
     """
-    feet = len(position)
-    place, speed, change = np.zeros((feet, 5)), np.zeros((feet, 5)), np.zeros((feet, 5))
+    points, axes = position.copy(), rotation.copy()
+    velocity, acceleration = np.zeros((len(points), 6)), np.zeros((len(points), 6))
     for i in range(len(courses)):
-        foot, axis = int(courses[i, 0]), int(courses[i, 1])
+        foot, kind = int(courses[i, 0]), int(courses[i, 1])
         way, rate, growth = course(courses[i], time)
-        place[foot, axis] += way
-        speed[foot, axis] += rate
-        change[foot, axis] += growth
-    points, axes = position.copy(), np.empty_like(rotation)
-    velocity, acceleration = np.zeros((feet, 6)), np.zeros((feet, 6))
-    for foot in range(feet):
-        points[foot] += facing @ place[foot, :3].copy()
-        velocity[foot, :3] = facing @ speed[foot, :3].copy()
-        acceleration[foot, :3] = facing @ change[foot, :3].copy()
-        turn, spin, growth_of_spin = turned(
-            place[foot, _ROLL],
-            place[foot, _PITCH],
-            speed[foot, _ROLL],
-            speed[foot, _PITCH],
-            change[foot, _ROLL],
-            change[foot, _PITCH],
+        if kind < 3:
+            points[foot] += way * facing[:, kind]
+            velocity[foot, :3] += rate * facing[:, kind]
+            acceleration[foot, :3] += growth * facing[:, kind]
+            continue
+        axis, pivot = facing[:, kind - 3].copy(), courses[i, 7:]
+        turn, spin, gain = turn_about(axis, way), rate * axis, growth * axis
+        arm = turn @ (points[foot] - pivot)
+        speed, turning = turn @ velocity[foot, :3].copy(), turn @ velocity[foot, 3:].copy()
+        changes = turn @ acceleration[foot, :3].copy(), turn @ acceleration[foot, 3:].copy()
+        points[foot] = pivot + arm
+        axes[foot] = turn @ axes[foot]
+        velocity[foot, :3] = speed + cross(spin, arm)
+        velocity[foot, 3:] = turning + spin
+        acceleration[foot, :3] = (
+            changes[0] + cross(gain, arm) + cross(spin, cross(spin, arm)) + 2.0 * cross(spin, speed)
         )
-        axes[foot] = facing @ turn @ facing.T @ rotation[foot]
-        velocity[foot, 3:] = facing @ spin
-        acceleration[foot, 3:] = facing @ growth_of_spin
+        acceleration[foot, 3:] = changes[1] + gain + cross(spin, turning)
     return points, axes, velocity, acceleration

@@ -51,7 +51,7 @@ class Simulator:
 
     Args:
         robot: the robot.
-        ground: what it stands on.
+        ground: what it stands on; it may be exchanged between two steps for one that is not higher.
         timestep: length of a step, s.
     """
 
@@ -60,7 +60,7 @@ class Simulator:
         self.ground = ground
         self.timestep = timestep
         self._weight = robot.mass * GRAVITY
-        self._soles = SolePoints(robot, ground, timestep)
+        self._soles = SolePoints(robot, timestep)
         self._bodies = BodyPoints(robot, timestep)
         self._push_data = robot.model.createData()
         self._rubbing = bool(robot.joint_friction.any())
@@ -110,7 +110,7 @@ class Simulator:
 
     def _touches(self, dynamics: Dynamics, time: float) -> Touches:
         """All points that may touch: soles, and other bodies in a fall."""
-        soles = self._soles.touches(dynamics, time)
+        soles = self._soles.touches(dynamics, self.ground, time)
         bodies = self._bodies.touches(dynamics.state, self.ground.floor)
         return soles if bodies is None else together(soles, bodies)
 

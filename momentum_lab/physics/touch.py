@@ -43,18 +43,17 @@ class Touches:
 class SolePoints:
     """The four corners of each sole, over the plates of a ground."""
 
-    def __init__(self, robot: RobotModel, ground: Ground, timestep: float) -> None:
-        self._ground = ground
+    def __init__(self, robot: RobotModel, timestep: float) -> None:
         self._half_step = 0.5 * timestep
         self._corners = np.array([sole.corners for sole in robot.soles])
 
-    def touches(self, dynamics: Dynamics, time: float) -> Touches:
+    def touches(self, dynamics: Dynamics, ground: Ground, time: float) -> Touches:
         """The corners of all feet that are not wholly clear of the ground at a time of the run, s.
 
         Plates are where they are at the start of a step, and have the velocity of its middle: so the way they go
-        in it is right to third order.
+        in it is right to third order, and to second order where they turn.
         """
-        plates, on_the_way = self._ground.at(time), self._ground.at(time + self._half_step)
+        plates, on_the_way = ground.at(time), ground.at(time + self._half_step)
         *contacts, position, origin, foot = placed_soles(
             self._corners,
             dynamics.sole_position,
@@ -63,7 +62,7 @@ class SolePoints:
             plates.position,
             plates.rotation,
             on_the_way.velocity,
-            self._ground.friction(time),
+            ground.friction(time),
         )
         return Touches(Contacts(*contacts), position, origin, foot)
 

@@ -29,6 +29,7 @@ class FootSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         joints: patterns (shell style) of the joints between pelvis and foot.
         parent: link the sole frame is added to when the URDF has none.
         offset: origin of the added frame in the parent link's frame, m.
+        rpy: roll, pitch and yaw of the added frame in the parent link's frame, rad.
     """
 
     frame: str
@@ -37,6 +38,7 @@ class FootSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     joints: tuple[str, ...]
     parent: str | None = None
     offset: Point = (0.0, 0.0, 0.0)
+    rpy: Point = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         for axis, (lower, upper) in (("x", self.x), ("y", self.y)):
@@ -58,6 +60,20 @@ class HomeSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     joints: dict[str, float] = {}
 
 
+class LimitSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
+    """What the lab takes instead of a limit that the URDF lacks or has wrong; None: the URDF's.
+
+    Attributes:
+        lower: smallest angle or position, rad or m.
+        upper: largest angle or position, rad or m.
+        effort: largest torque or force, N m or N.
+    """
+
+    lower: float | None = None
+    upper: float | None = None
+    effort: Positive | None = None
+
+
 class RobotSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A humanoid as the lab needs to know it; one TOML file.
 
@@ -73,6 +89,7 @@ class RobotSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         push_bodies: names on the screen -> links that may be pushed.
         friction: Coulomb coefficient between sole and ground.
         armature: patterns of joint names -> rotor inertia seen at the joint, kg m^2; the later pattern wins.
+        limits: patterns of joint names -> limits that replace the URDF's; the later pattern wins.
         motions: name of a motion -> patterns of joint names -> how far they go in it, rad.
         fall_points: link -> points in its frame that may hit the ground, m.
         sources: where each number comes from, in words.
@@ -89,6 +106,7 @@ class RobotSpec(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     push_bodies: dict[str, str]
     friction: Annotated[float, msgspec.Meta(gt=0.0, le=2.0)] = 0.7
     armature: dict[str, float] = {}
+    limits: dict[str, LimitSpec] = {}
     motions: dict[str, dict[str, float]] = {}
     fall_points: dict[str, tuple[Point, ...]] = {}
     sources: dict[str, str] = {}

@@ -58,6 +58,7 @@ class RobotModel:
         self.joint_names: tuple[str, ...] = tuple(self.model.names[2:])
         self.soles = tuple(self._sole(name, foot) for name, foot in spec.feet.items())
         self.model.armature = _armature(spec, self)
+        _replace_limits(spec, self)
         self.data = self.model.createData()
         self.pelvis = self.frame(spec.pelvis)
         self.trunk = self.frame(spec.trunk)
@@ -66,6 +67,7 @@ class RobotModel:
         self.position_upper = self.model.upperPositionLimit[7:].copy()
         self.effort_limit = self.model.effortLimit[_BASE_DOF:].copy()
         self.joint_friction = np.zeros(self.na)
+        self.inertia_scale = 1.0
         self.mass = float(pin.computeTotalMass(self.model))
         self._gravity = self.model.gravity.linear.copy()
         self._frames = Frames.of(self.model, [*(sole.frame for sole in self.soles), self.pelvis])
@@ -89,6 +91,7 @@ class RobotModel:
         robot.model = self.model.copy()
         for link in robot.model.inertias:
             link.mass, link.inertia = inertia * link.mass, inertia * link.inertia
+        robot.inertia_scale = inertia * self.inertia_scale
         robot.data = robot.model.createData()
         robot._memory = memory_of(robot.data)
         robot.mass = float(pin.computeTotalMass(robot.model))
@@ -189,7 +192,7 @@ def _add_frame(model: pin.Model, name: str, foot: FootSpec, parent: int) -> None
             f"feet.{name}.frame", foot.frame, "a new name, or no parent: the URDF has this frame"
         )
     link = model.frames[parent]
-    placement = link.placement * pin.SE3(np.eye(3), np.array(foot.offset))
+    placement = link.placement * pin.SE3(pin.rpy.rpyToMatrix(np.array(foot.rpy)), np.array(foot.offset))
     model.addFrame(pin.Frame(foot.frame, link.parentJoint, parent, placement, pin.FrameType.OP_FRAME))
 
 
@@ -199,6 +202,20 @@ def _armature(spec: RobotSpec, robot: RobotModel) -> np.ndarray:
     for pattern, inertia in spec.armature.items():
         armature[_BASE_DOF + robot.matching_joints([pattern])] = inertia
     return armature
+
+
+def _replace_limits(spec: RobotSpec, robot: RobotModel) -> None:
+    """Put the limits of the robot's file in place of the URDF's."""
+    model = robot.model
+    for pattern, limit in spec.limits.items():
+        joints = robot.matching_joints([pattern])
+        for array, first, value in (
+            (model.lowerPositionLimit, 7, limit.lower),
+            (model.upperPositionLimit, 7, limit.upper),
+            (model.effortLimit, _BASE_DOF, limit.effort),
+        ):
+            if value is not None:
+                array[first + joints] = value
 
 
 def _check(robot: RobotModel) -> None:

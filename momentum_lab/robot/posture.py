@@ -27,6 +27,8 @@ _STANCE, _COM, _SWING, _HEIGHT, _UPRIGHT, _REST = 1e6, 1e6, 1e3, 1e2, 1.0, 1e-4
 _LARGEST_STEP = 0.2
 _STEPS, _STILL = 200, 1e-9
 _DISTANCE_ERROR, _ANGLE_ERROR, _LIFT_ERROR = 2e-5, 2e-5, 0.02
+# A URDF whose soles are tilted by less than this has z up: its feet hang a little, nothing more.
+_NEARLY_UP = np.cos(np.pi / 4)
 _REACHABLE_HOME = "a home (foot_distance, base_height, joints) that the legs can reach"
 _REACHABLE_PLATES = "plates that the legs can reach: less tilt or less height between the feet"
 
@@ -106,9 +108,11 @@ def _home_angles(robot: RobotModel) -> np.ndarray:
 
 
 def _turn(robot: RobotModel, data: pin.Data) -> np.ndarray:
-    """The turn (3, 3) that lets a robot face along x: with all joints at zero the toes tell where it faces."""
-    toes = data.oMf[robot.soles[0].frame].rotation[:, 0]
-    turn: np.ndarray = pin.utils.rotate("z", -float(np.arctan2(toes[1], toes[0])))
+    """The turn (3, 3) that lets a robot stand upright and face along x, as its sole does with all joints at zero."""
+    sole = data.oMf[robot.soles[0].frame].rotation
+    upright = _upright(sole[:, 2])
+    toes = upright @ sole[:, 0]
+    turn: np.ndarray = pin.utils.rotate("z", -float(np.arctan2(toes[1], toes[0]))) @ upright
     return turn
 
 
@@ -134,8 +138,15 @@ def _goal(
     return _Goal(turn, soles, com, height, turn @ data.oMf[robot.pelvis].rotation, allowed)
 
 
+def _upright(sole_normal: np.ndarray) -> np.ndarray:
+    """The smallest turn (3, 3) that lets the normal of a sole point up, if the URDF has another axis up than z."""
+    if sole_normal[2] > _NEARLY_UP:
+        return np.eye(3)
+    return pin.Quaternion.FromTwoVectors(sole_normal, np.array([0.0, 0.0, 1.0])).toRotationMatrix()
+
+
 def _solve(robot: RobotModel, feet: Sequence[str], goal: _Goal) -> np.ndarray:
-    xml = ET.tostring(bare_urdf(robot.urdf, robot.spec.feet), encoding="unicode")
+    xml = ET.tostring(bare_urdf(robot.urdf, robot.spec), encoding="unicode")
     body = placo.RobotWrapper(str(robot.urdf), placo.Flags.ignore_collisions, xml)
     solver = placo.KinematicsSolver(body)
     _start(robot, body, solver, goal)

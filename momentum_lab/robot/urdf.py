@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
+from fnmatch import fnmatchcase
 from importlib import metadata
 from pathlib import Path
 
 import pinocchio as pin
 
 from momentum_lab.errors import RobotError
-from momentum_lab.robot.catalog import FootSpec, RobotSpec
+from momentum_lab.robot.catalog import LimitSpec, RobotSpec
 
 _DATA = "example-robot-data"
+_LEVEL = (0.0, 0.0, 0.0)
 
 
 def robot_data_folder() -> Path:
@@ -62,12 +64,12 @@ def read_urdf(path: Path) -> ET.Element:
     return root
 
 
-def bare_urdf(path: Path, feet: dict[str, FootSpec]) -> ET.Element:
-    """A URDF without its meshes, which other libraries would look for, and with the sole frames it lacks.
+def bare_urdf(path: Path, spec: RobotSpec) -> ET.Element:
+    """A URDF without its meshes, which other libraries would look for, and with what the robot's file adds to it.
 
     Args:
         path: the URDF file.
-        feet: the feet of the robot, by name; a foot with a parent gets a link of its own.
+        spec: the robot; a foot with a parent gets a link of its own, limits of the file replace the URDF's.
 
     Raises:
         RobotError: the file is no URDF.
@@ -76,19 +78,35 @@ def bare_urdf(path: Path, feet: dict[str, FootSpec]) -> ET.Element:
     for link in root.findall("link"):
         for shape in (*link.findall("visual"), *link.findall("collision")):
             link.remove(shape)
-    for foot in feet.values():
+    for foot in spec.feet.values():
         if foot.parent is not None:
-            add_fixed_link(root, foot.frame, foot.parent, foot.offset)
+            add_fixed_link(root, foot.frame, foot.parent, foot.offset, foot.rpy)
+    for pattern, limit in spec.limits.items():
+        for joint in root.findall("joint"):
+            if fnmatchcase(joint.get("name", ""), pattern):
+                _replace_limit(joint, limit)
     return root
 
 
-def add_fixed_link(root: ET.Element, name: str, parent: str, offset: Iterable[float]) -> None:
-    """Add a link without mass to a URDF, at an offset (3,) in the axes of another link, m."""
+def _replace_limit(joint: ET.Element, limit: LimitSpec) -> None:
+    """Write the limits that are given into a joint of a URDF."""
+    element = joint.find("limit")
+    if element is None:
+        element = ET.SubElement(joint, "limit", velocity="0")
+    for name, value in (("lower", limit.lower), ("upper", limit.upper), ("effort", limit.effort)):
+        if value is not None:
+            element.set(name, repr(value))
+
+
+def add_fixed_link(
+    root: ET.Element, name: str, parent: str, offset: Iterable[float], rpy: Iterable[float] = _LEVEL
+) -> None:
+    """Add a link without mass to a URDF, at an offset (3,) in another link, m, turned by rpy (3,), rad."""
     ET.SubElement(root, "link", name=name)
     joint = ET.SubElement(root, "joint", name=f"{name}_weld", type="fixed")
     ET.SubElement(joint, "parent", link=parent)
     ET.SubElement(joint, "child", link=name)
-    ET.SubElement(joint, "origin", xyz=" ".join(map(str, offset)))
+    ET.SubElement(joint, "origin", xyz=" ".join(map(str, offset)), rpy=" ".join(map(str, rpy)))
 
 
 def load_model(path: Path) -> pin.Model:

@@ -81,3 +81,18 @@ def test_a_window_without_height_has_a_usual_shape():
     client.camera.image_height = 0
     Camera(client, 0.88).look("Whole robot", np.zeros(2))
     assert np.isfinite(client.camera.position).all()
+
+
+def test_two_robots_are_looked_at_again_when_a_panel_takes_some_of_the_picture():
+    client = FakeClient()
+    camera, center = Camera(client, 0.9), np.zeros(2)
+    for spread, goes_away in ((None, False), (np.array([0.0, 1.4]), True)):
+        client.camera.image_width = 1280
+        camera.look("Whole robot", center, spread)
+        near = float(np.linalg.norm(client.camera.position))
+        client.camera.image_width = 580
+        camera.follow(center, 0.35)
+        assert (np.linalg.norm(client.camera.position) > 1.1 * near) == goes_away
+        person = client.camera.position = client.camera.position + 0.3
+        camera.follow(center, 0.35)  # and never again: a person may have turned it
+        np.testing.assert_array_equal(client.camera.position, person)

@@ -8,8 +8,11 @@ from types import SimpleNamespace
 import pytest
 
 from momentum_lab.app.ground_panel import GroundPanel
+from momentum_lab.errors import InputError
 from momentum_lab.events import MoveGround, SetFriction, SetGroundSense, StopGround
 from momentum_lab.physics.plate import PlateMotion
+from momentum_lab.scenario import Scenario
+from momentum_lab.session import Session
 from tests.app.fakes import FakeGui
 
 
@@ -57,6 +60,25 @@ def test_it_shows_what_is_the_case(desk):
     assert desk.gui.widgets["the robot"].value == "feels it through its soles"
 
 
+@pytest.mark.parametrize("label", ["under", "motion", "how often", "how far (cm, °)", "period (s)"])
+@pytest.mark.parametrize("value", ["nonsense", None, math.nan, 1e9])
+def test_what_no_widget_gives_moves_nothing_unseen(desk, g1, label, value):
+    """A client can send anything: it is refused here in words, or by the session."""
+    desk.set(label, value)
+    desk.set("Move the ground", True)
+    session = Session(Scenario("any", robot="g1"), robot=g1)
+    for event in desk.posted:
+        with pytest.raises(InputError):
+            session.post(event)
+    assert len(desk.posted) + len(desk.told) == 1
+
+
+def test_a_sense_that_does_not_exist_is_for_the_session_to_refuse(desk, g1):
+    desk.set("the robot", "nonsense")
+    with pytest.raises(InputError, match="ground_sense"):
+        Session(Scenario("any", robot="g1"), robot=g1).post(desk.posted[0])
+
+
 def test_nonsense_is_answered_in_words(desk):
     desk.set("period (s)", math.nan)
     desk.set("Move the ground", True)
@@ -66,4 +88,4 @@ def test_nonsense_is_answered_in_words(desk):
 
 def test_another_robot_has_other_feet(desk):
     desk.panel.set_feet(("l_sole", "r_sole"))
-    assert desk.gui.widgets["under"].options == ("both", "l_sole", "r_sole")
+    assert desk.gui.widgets["under"].options == ("all feet", "l_sole", "r_sole")

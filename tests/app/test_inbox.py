@@ -8,6 +8,7 @@ import msgspec
 import pytest
 
 from momentum_lab.app.inbox import checked_event
+from momentum_lab.beside import Beside
 from momentum_lab.errors import InputError
 from momentum_lab.events import (
     ApplyPush,
@@ -15,6 +16,7 @@ from momentum_lab.events import (
     LookBack,
     Pause,
     SelectRobot,
+    SetBeside,
     SetGain,
     SetPriority,
     SetSpeed,
@@ -38,6 +40,8 @@ def check(event):
         SetSpeed(0.125),
         SetSpeed(1.0),
         SelectRobot("g1"),
+        SetBeside(None),
+        SetBeside(Beside("slack-qp", 0.5, {"com_weight": 2.0})),
         LoadScenario("stand"),
         LookBack(0.0),
         LookBack(60.0),

@@ -20,10 +20,17 @@ class Desk:
         self.commands: dict[str, tuple[str | None, Callable]] = {}
         self.client.gui.add_command = self._add_command
         note = self.done.append
-        push = FakeHandle(apply=lambda: note("push"), apply_again=lambda: note("again"))
+        push = FakeHandle(
+            apply=lambda: note("push"), apply_again=lambda: note("again"), ask=lambda: note("ask")
+        )
+        runs = FakeHandle(
+            keep=lambda: note("keep"),
+            run_again=lambda: note("same pushes"),
+            toggle_ghost=lambda: note("ghost"),
+        )
         status = FakeHandle(toggle=lambda: note("toggle"))
         tabs = FakeHandle(open=lambda index: note(f"tab {index}"))
-        add_keys(self.client, note, push, status, tabs)
+        add_keys(self.client, note, push, status, tabs, runs)
 
     def _add_command(self, label: str, hotkey: str | None = None) -> FakeHandle:
         command = FakeHandle()
@@ -40,15 +47,27 @@ def desk() -> Desk:
 
 
 def test_what_each_key_does(desk):
-    for key in "PKJLR123":
+    for key in "PKJLR1234FMNG":
         desk.press(key)
-    assert desk.done == ["push", "toggle", StepOnce(1), StepOnce(20), Reset(), "tab 0", "tab 1", "tab 2"]
+    assert desk.done == [
+        "push",
+        "toggle",
+        StepOnce(1),
+        StepOnce(20),
+        Reset(),
+        *(f"tab {i}" for i in range(4)),
+        "ask",
+        "keep",
+        "same pushes",
+        "ghost",
+    ]
 
 
 def test_no_key_is_used_twice_and_none_that_widgets_need(desk):
     hotkeys = [hotkey for hotkey, _ in desk.commands.values() if hotkey]
     assert len(set(hotkeys)) == len(hotkeys)
-    assert set(hotkeys) == set("PKJLRB123H")
+    assert not set(hotkeys) & set("WASDQE")
+    assert set(hotkeys) == set("PKJLRB1234FMNGH")
 
 
 def test_a_key_that_is_held_down_acts_once(desk, monkeypatch):

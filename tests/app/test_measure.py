@@ -9,6 +9,8 @@ import pytest
 from momentum_lab.app.figures import AppMeasurement, figures
 from momentum_lab.app.measure import Course, measure_app
 
+pytestmark = pytest.mark.quiet
+
 # A machine that runs other things at the same time may be this much slower than the bounds of the report.
 SECONDS = 20.0
 

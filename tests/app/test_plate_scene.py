@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pinocchio as pin
+import pytest
 
 from momentum_lab.app.plate_scene import PlateScene
+from momentum_lab.scenario import changed, load_scenario
+from momentum_lab.session import Session
 from tests.app.fakes import FakeClient
 from tests.conftest import assert_close
 
@@ -30,7 +33,8 @@ def test_there_is_no_box_on_the_floor(talos):
 def test_one_platform_or_a_plate_under_each_foot(talos):
     client = FakeClient()
     scene = PlateScene(client, talos)
-    scene.draw(np.array([pose(0.02, 0.0, 0.1)] * 2), (0.7, 0.7), True)
+    scene.draw(np.array([pose(0.04, 0.0, 0.0), pose(0.0, 0.0, 0.0)]), (0.7, 0.7), True)
+    assert list(client.scene.nodes) == ["/plates/0"]
     assert_close(top_of(client.scene.nodes["/plates/0"]), [0.02, 0.0, 0.1], 1e-12)
     poses = np.array([pose(0.0, 0.08, 0.2), pose(0.0, -0.08, -0.2)])
     scene.draw(poses, (0.7, 0.2), True)
@@ -52,3 +56,17 @@ def test_plates_at_rest_are_not_sent_again(talos):
     box.position = "untouched"
     scene.draw(poses, (0.7, 0.7), True)
     assert box.position == "untouched"
+
+
+@pytest.mark.parametrize("name", ["slopes", "board", "ice"])
+def test_boxes_are_where_the_feet_are(g1, name):
+    """The top of each box is under the middle of its sole, in the run that is drawn."""
+    session = Session(changed(load_scenario(name), robot="g1"), robot=g1)
+    for _ in range(1200):
+        session.tick()
+    client, sample = FakeClient(), session.recording.latest
+    PlateScene(client, g1).draw(sample["ground_pose"], tuple(session.ground.friction(1.2)), True)
+    for foot, sole in enumerate(g1.soles):
+        middle = np.append((sole.lower + sole.upper) / 2, 0.0)
+        there = pin.XYZQUATToSE3(sample["sole_pose"][foot]).act(middle)
+        assert np.abs(top_of(client.scene.nodes[f"/plates/{foot}"]) - there).max() < 0.01

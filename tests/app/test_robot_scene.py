@@ -104,3 +104,16 @@ def test_see_through(loaded, client):
     assert all(0.0 < mesh.opacity < 1.0 for mesh in meshes)
     scene.see_through(False)
     assert all(mesh.opacity is None for mesh in meshes)
+
+
+def test_a_second_tree_has_a_root_a_color_and_an_end_of_its_own(loaded, client):
+    first = RobotScene(client, loaded, standing_posture(loaded.model))
+    ghost = RobotScene(client, loaded, standing_posture(loaded.model), "/ghost", (1, 2, 3))
+    ghost.fade(0.4)
+    meshes = [node for node in client.scene.nodes.values() if node.method == "add_mesh_simple"]
+    assert {node.color for node in meshes if node.name.startswith("/ghost")} == {(1, 2, 3)}
+    assert {node.color for node in meshes if node.name.startswith("/robot")} == {(0.5, 0.5, 0.5)}
+    ghost.remove()
+    first.draw(standing_posture(loaded.model))
+    assert client.scene.nodes["/ghost/1"].removed
+    assert not client.scene.nodes["/robot/1"].removed

@@ -17,6 +17,7 @@ from momentum_lab.app.wire import (
     unpacked_frame,
     unpacked_message,
 )
+from momentum_lab.beside import Beside
 from momentum_lab.physics.plate import PlateMotion
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
@@ -44,6 +45,9 @@ EVENTS = [
     events.LoadScenario("stand"),
     events.LookBack(1.5),
     events.Branch(),
+    events.SetBeside(Beside("slack-qp", 0.5, {"com_weight": 2.0})),
+    events.RunAgain(),
+    events.Foresee(Push(force=217.0)),
 ]
 
 

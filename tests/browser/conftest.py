@@ -32,9 +32,9 @@ SERVE = """
 import sys
 from momentum_lab.app.profile import PROFILES
 from momentum_lab.app.server import serve
-from momentum_lab.scenario import Scenario
+from momentum_lab.scenario import load_scenario
 if __name__ == "__main__":
-    serve(Scenario("stand"), port=0, open_browser=False, profile=PROFILES[sys.argv[1]])
+    serve(load_scenario(sys.argv[2]), port=0, open_browser=False, profile=PROFILES[sys.argv[1]])
 """
 
 
@@ -46,10 +46,10 @@ class Served:
     url: str
 
 
-def serve(folder: Path, profile: str) -> Iterator[Served]:
+def serve(folder: Path, profile: str, scenario: str = "stand") -> Iterator[Served]:
     script = folder / "lab.py"
     script.write_text(SERVE)
-    process = subprocess.Popen([sys.executable, script, profile], stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen([sys.executable, script, profile, scenario], stdout=subprocess.PIPE, text=True)
     try:
         yield Served(process, process.stdout.readline().split()[2])
         process.terminate()

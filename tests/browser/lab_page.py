@@ -60,6 +60,16 @@ class LabPage:
         for key in keys:
             self.page.keyboard.press(key)
 
+    def open_tab(self, key: str, name: str) -> None:
+        """Open a tab by its key; a page that is busy may need a second press."""
+        tab = self.page.get_by_role("tab", name=name)
+        for _ in range(5):
+            self.press(key)
+            self.page.wait_for_timeout(2000)
+            if tab.get_attribute("aria-selected") == "true":
+                return
+        expect(tab).to_have_attribute("aria-selected", "true")
+
     def click(self, name: str) -> None:
         """Press a button, by script: a page that draws in software is slow to say that it stands still."""
         self.page.get_by_role("button", name=name, exact=True).first.evaluate("b => b.click()")

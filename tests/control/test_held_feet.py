@@ -8,7 +8,7 @@ import pytest
 from momentum_lab.control.held_feet import holding_torque, motion_of_held_feet, weight_on_feet
 from momentum_lab.momentum.centroidal import momentum_rate
 from tests.conftest import assert_close
-from tests.control.situations import BOTH, G, home, null_space, swaying
+from tests.control.situations import BOTH, LEVEL, G, home, null_space, swaying
 
 STANCES = [BOTH, (0,), (1,)]
 
@@ -24,7 +24,7 @@ def test_motion_obeys_the_equations_of_motion_and_the_glue(robot, rng, stance):
     for _ in range(5):
         dynamics = swaying(robot, rng, stance)
         torque = rng.normal(scale=0.1, size=robot.na) * robot.effort_limit
-        acceleration, wrench = motion_of_held_feet(dynamics, torque, stance)
+        acceleration, wrench = motion_of_held_feet(dynamics, torque, stance, LEVEL)
         force = dynamics.mass_matrix @ acceleration + dynamics.nonlinear_effects
         force -= np.einsum("fi,fij->j", wrench, dynamics.sole_jacobian)
         assert_close(force, np.concatenate([np.zeros(6), torque]), 1e-8 * robot.mass * G)
@@ -37,7 +37,7 @@ def test_motion_obeys_the_equations_of_motion_and_the_glue(robot, rng, stance):
 def test_momentum_rate_is_gravity_and_the_wrenches_of_the_glue(robot, rng):
     """Eqs. 1 and 2."""
     dynamics = swaying(robot, rng)
-    acceleration, wrench = motion_of_held_feet(dynamics, rng.normal(size=robot.na), BOTH)
+    acceleration, wrench = motion_of_held_feet(dynamics, rng.normal(size=robot.na), BOTH, LEVEL)
     expected = about_com(robot, dynamics, wrench)
     expected[2] -= robot.mass * G
     assert_close(momentum_rate(dynamics, acceleration), expected, 1e-8 * robot.mass * G)
@@ -75,6 +75,6 @@ def test_the_torques_that_hold_the_weight_hold_the_robot(robot, stance):
     """At rest with glued feet nothing moves."""
     dynamics = home(robot, stance)
     torque = holding_torque(dynamics, weight_on_feet(robot, dynamics, stance))
-    acceleration, wrench = motion_of_held_feet(dynamics, torque, stance)
+    acceleration, wrench = motion_of_held_feet(dynamics, torque, stance, LEVEL)
     assert_close(acceleration, np.zeros(robot.nv), 1e-5)
     assert_close(wrench, weight_on_feet(robot, dynamics, stance), 1e-4 * robot.mass * G)

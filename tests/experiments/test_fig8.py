@@ -8,7 +8,7 @@ from momentum_lab.scenario import changed
 from tests.experiments.played import any_starts, claims, failing, failing_with, played
 
 
-@pytest.mark.parametrize("name", ["talos", "g1"])
+@pytest.mark.parametrize("name", ["talos", "g1", "romeo", "icub"])
 def test_claims_hold(name: str) -> None:
     assert failing(claims("fig8", name)) == []
 

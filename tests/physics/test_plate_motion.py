@@ -9,11 +9,12 @@ import pinocchio as pin
 import pytest
 
 from momentum_lab.errors import InputError
-from momentum_lab.physics.ground import Ground, Patch
-from momentum_lab.physics.plate import FrictionChange, PlateMotion
+from momentum_lab.physics.ground import FootMotion, Ground, Patch
+from momentum_lab.physics.plate import MAX_MOTIONS, FrictionChange, PlateMotion
 from tests.conftest import assert_close, random_rotation, yaw_rotation
 
 STEP = 1e-5
+PIVOT = np.array([0.3, -0.2, 0.1])
 TIMES = (0.4, 0.9, 1.7, 2.6, 4.1, 5.3, 6.5)
 EVERY_AXIS = (
     PlateMotion("x", 0.05),
@@ -26,7 +27,14 @@ EVERY_AXIS = (
 
 def moving(rng, *motions: PlateMotion, facing: np.ndarray | None = None) -> Ground:
     patches = tuple(Patch(0.7, rng.normal(size=3), random_rotation(rng)) for _ in range(2))
-    return Ground(patches, Patch(0.7), facing, tuple((1, motion) for motion in motions))
+    return Ground(patches, Patch(0.7), facing, tuple(FootMotion(1, motion, PIVOT) for motion in motions))
+
+
+def one_plate(
+    *motions: PlateMotion, pivot: np.ndarray | None = None, facing: np.ndarray | None = None
+) -> Ground:
+    at = np.zeros(3) if pivot is None else pivot
+    return Ground((Patch(0.7),), Patch(0.7), facing, tuple(FootMotion(0, motion, at) for motion in motions))
 
 
 def test_velocity_and_acceleration_are_derivatives_of_the_pose(rng):
@@ -59,12 +67,10 @@ def test_nothing_jerks(rng):
     assert not ground.at(6.5).velocity[1, 3:].any()
 
 
-def test_amplitudes_are_reached(rng):
+def test_amplitudes_are_reached():
     """A sine goes to both sides by its amplitude, a step ends at it; x is where the scenario faces."""
-    facing = yaw_rotation(math.pi / 2)
-    patch = Patch(0.7)
-    ground = Ground(
-        (patch,), patch, facing, ((0, PlateMotion("x", 0.05)), (0, PlateMotion("z", 0.02, "step", 1.0)))
+    ground = one_plate(
+        PlateMotion("x", 0.05), PlateMotion("z", 0.02, "step", 1.0), facing=yaw_rotation(math.pi / 2)
     )
     way = np.array([ground.at(t).position[0] for t in np.arange(3.0, 9.0, 1e-3)])
     assert_close([way[:, 1].min(), way[:, 1].max()], [-0.05, 0.05], 1e-6)
@@ -73,25 +79,59 @@ def test_amplitudes_are_reached(rng):
 
 
 def test_positive_roll_lifts_the_left_and_positive_pitch_lowers_the_front():
-    patch = Patch(0.7)
-    for motion, ahead in (
-        (PlateMotion("roll", 5.0, "step"), [0, 1, 0]),
-        (PlateMotion("pitch", -5.0, "step"), [1, 0, 0]),
-    ):
-        rotation = Ground((patch,), patch, None, ((0, motion),)).at(9.0).rotation[0]
+    steps = ((PlateMotion("roll", 5.0, "step"), [0, 1, 0]), (PlateMotion("pitch", -5.0, "step"), [1, 0, 0]))
+    for motion, ahead in steps:
+        rotation = one_plate(motion).at(9.0).rotation[0]
         assert (rotation @ ahead)[2] == pytest.approx(math.sin(math.radians(5.0)))
 
 
+def test_a_turn_leaves_its_pivot_where_it_is(rng):
+    """The point of the plate that was at the pivot stays there; ways carry it along."""
+    ground = one_plate(
+        PlateMotion("roll", 8.0), PlateMotion("z", 0.05, "step"), PlateMotion("pitch", 5.0), pivot=PIVOT
+    )
+    for time in TIMES:
+        plate, lifted = ground.at(time), one_plate(PlateMotion("z", 0.05, "step")).at(time).position[0]
+        assert_close(plate.position[0] + plate.rotation[0] @ PIVOT, PIVOT + lifted, 1e-15)
+
+
 def test_coming_to_rest_takes_a_period():
-    patch = Patch(0.7)
-    ground = Ground(
-        (patch,), patch, None, ((0, PlateMotion("x", 0.05)), (0, PlateMotion("y", 0.05, start=9.0)))
+    """What sways comes to rest where it was, what has not begun never begins, steps go on."""
+    ground = one_plate(
+        PlateMotion("x", 0.05), PlateMotion("y", 0.05, start=9.0), PlateMotion("z", 0.01, "step", start=9.0)
     )
     resting = ground.coming_to_rest(5.0)
     assert_close(resting.at(4.9).position, ground.at(4.9).position, 0.0)
     assert abs(resting.at(6.0).velocity[0, 0]) > 1e-3
     assert_close(resting.at(7.01).position[0], np.zeros(3), 1e-15)
-    assert not resting.at(12.0).velocity.any()
+    assert not resting.at(8.0).velocity.any()
+    assert_close(resting.at(13.0).position[0], [0.0, 0.0, 0.01], 1e-15)
+
+
+def test_what_has_come_to_rest_does_not_begin_again():
+    ground = one_plate(PlateMotion("x", 0.05, start=0.0, stop=0.0))
+    assert not ground.at(3.0).velocity.any()
+    assert not ground.coming_to_rest(2.0).at(3.0).velocity.any()
+
+
+def test_the_floor_gives_way_to_plates_that_go_lower():
+    assert one_plate(PlateMotion("x", 0.05)).floor.origin[2] == 0.0
+    assert one_plate(PlateMotion("z", -0.1, "step")).floor.origin[2] == pytest.approx(-0.1)
+    turned = one_plate(PlateMotion("roll", 10.0, "step"), pivot=np.array([0.0, 0.1, 0.0]))
+    assert turned.floor.origin[2] <= turned.at(9.0).position[0, 2] < 0.0
+
+
+def test_motions_together_are_bounded():
+    """Steps there and back may be many; steps that add up, and too many motions, are refused."""
+    there, back = PlateMotion("roll", 10.0, "step"), PlateMotion("roll", -10.0, "step", start=3.0)
+    again = PlateMotion("roll", 10.0, "step", start=6.0)
+    ground = one_plate(there, back).moving_too((0,), again)
+    with pytest.raises(InputError, match="20 degrees of roll in all"):
+        one_plate(there).moving_too((0,), again)
+    for _ in range(MAX_MOTIONS - 3):
+        ground = ground.moving_too((0,), PlateMotion("z", 0.001, "step"))
+    with pytest.raises(InputError, match="stand up again"):
+        ground.moving_too((0,), PlateMotion("z", 0.001, "step"))
 
 
 def test_friction_changes_when_it_is_to():
@@ -105,7 +145,9 @@ def test_friction_changes_when_it_is_to():
     assert ground.friction(0.4).tolist() == [0.7, 0.6]
     assert ground.friction(0.5).tolist() == [0.7, 0.4]
     assert ground.friction(1.0).tolist() == [0.7, 0.2]
-    assert ground.as_slippery_as(0.9, (0, 1), 2.0).friction(2.0).tolist() == [0.9, 0.9]
+    later = ground.as_slippery_as(0.9, (0, 1), 2.0)
+    assert later.friction(2.0).tolist() == [0.9, 0.9]
+    assert later.friction(1.5).tolist() == [0.7, 0.2]  # what was stays
 
 
 @pytest.mark.parametrize(
@@ -120,4 +162,4 @@ def test_friction_changes_when_it_is_to():
 )
 def test_what_goes_too_far_is_refused(motion, named):
     with pytest.raises(InputError, match=named):
-        Ground((Patch(0.7),), Patch(0.7), None, ((0, motion),))
+        one_plate(motion)

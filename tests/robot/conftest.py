@@ -9,7 +9,7 @@ import pytest
 
 from momentum_lab.robot.model import RobotModel
 
-CATALOG = ("g1", "icub", "romeo", "talos")
+CATALOG = ("g1", "human", "icub", "romeo", "simple_humanoid", "talos")
 
 INERTIAL = """<inertial><mass value="{mass}"/>
   <inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>"""

@@ -100,7 +100,8 @@ def test_knees_are_bent_and_the_pelvis_is_level_at_its_home_height(any_robot: Ro
     pin.framesForwardKinematics(any_robot.model, data, q)
     pelvis = data.oMf[any_robot.pelvis]
     assert_close(pelvis.translation[2], any_robot.spec.home.base_height, 1e-4)
-    assert_close(pelvis.rotation[:, 2], [0.0, 0.0, 1.0], 1e-4)
+    up = 1 if any_robot.spec.name == "human" else 2
+    assert_close(pelvis.rotation[:, up], [0.0, 0.0, 1.0], 1e-4)
 
 
 def test_the_pelvis_of_g1_leans_over_the_stance_foot_because_its_ankle_cannot(

@@ -1,0 +1,73 @@
+"""What differs between runs, in words: what was chosen for them, and how they were pushed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import msgspec
+
+from momentum_lab.app.wire import Truth
+from momentum_lab.physics.push import Push
+
+NOTHING = "–"
+
+
+def choices(truth: Truth) -> dict[str, str]:
+    """Everything that was chosen for a run, by its name on the screen."""
+    return {
+        "robot": truth.robot,
+        "controller": truth.controller,
+        "priority": f"{truth.priority:g}",
+        "planner": truth.planner,
+        "directions": truth.controlled,
+        "motion": truth.motion or "stand still",
+        "angular goal": truth.angular_goal,
+        "how the ground moves": truth.ground_sense,
+        "friction of the ground": ", ".join(f"{value:g}" for value in dict.fromkeys(truth.friction)),
+        "push": NOTHING if truth.first_push is None else push_in_words(truth.first_push),
+        **{name.replace("_", " "): f"{value:g}" for name, value in truth.gains.items()},
+    }
+
+
+def differences(truths: Sequence[Truth]) -> dict[str, tuple[str, ...]]:
+    """The choices that are not the same in all runs: name -> one value for each."""
+    chosen = [choices(truth) for truth in truths]
+    names = dict.fromkeys(name for each in chosen for name in each)
+    values = {name: tuple(each.get(name, NOTHING) for each in chosen) for name in names}
+    return {name: found for name, found in values.items() if len(set(found)) > 1}
+
+
+def with_choices(truth: Truth, chosen: Truth) -> Truth:
+    """What is the case in a run, with the choices of another moment of it."""
+    return msgspec.structs.replace(
+        truth,
+        controller=chosen.controller,
+        priority=chosen.priority,
+        planner=chosen.planner,
+        controlled=chosen.controlled,
+        motion=chosen.motion,
+        angular_goal=chosen.angular_goal,
+        ground_sense=chosen.ground_sense,
+        gains=chosen.gains,
+    )
+
+
+def names_of(first: Truth, second: Truth) -> tuple[str, str]:
+    """What to call two robots: by the first thing in which they differ."""
+    found = differences((first, second))
+    if not found:
+        return "first", "second"
+    name, (one, other) = next(iter(found.items()))
+    if name in ("robot", "controller"):
+        return one, other
+    return f"{name} {one}", f"{name} {other}"
+
+
+def push_in_words(push: Push) -> str:
+    """Force, duration and direction, and what else a push says."""
+    words = f"{push.force or 0.0:.0f} N, {1e3 * push.duration:.0f} ms, {push.direction_deg:.0f}°"
+    if push.height is not None:
+        words += f", {push.height:g} m high"
+    if push.body is not None:
+        words += f", {push.body.replace('_', ' ')}"
+    return words if push.shape == "rectangle" else f"{words}, {push.shape}"
