@@ -79,6 +79,13 @@ class SetGroundSense(msgspec.Struct, frozen=True, tag=True):
     sense: Literal["told", "felt"]
 
 
+class SetMismatch(msgspec.Struct, frozen=True, tag=True):
+    """Let the real robot differ from what its controller believes, in one of the entries of a `Mismatch`."""
+
+    name: str
+    value: float
+
+
 class SelectController(msgspec.Struct, frozen=True, tag=True):
     """Change the controller; its gains start at their defaults, and so does a planner that it cannot take."""
 
@@ -167,6 +174,7 @@ SessionEvent = (
     | MoveGround
     | StopGround
     | SetGroundSense
+    | SetMismatch
     | SelectController
     | ApplyPush
     | Reset

@@ -17,7 +17,7 @@ _LIBRARIES = ("pin", "numpy", "placo", "daqp", "scipy", "example-robot-data")
 def provenance(session: Session) -> dict[str, Any]:
     """What the meta entry of a trace says, as plain data that goes to JSON.
 
-    Versions; the scenario as it was run; controller, gains and priority as they are now; the log of events;
+    Versions; the scenario as it was run; controller, gains, priority and mismatch as they are now; the log of events;
     and the robot: its URDF as a path relative to the folder `robots` of the example-robot-data distribution
     (absolute if it lies elsewhere), mass (kg), and for each foot its sole frame and rectangle (m).
     """
@@ -28,6 +28,7 @@ def provenance(session: Session) -> dict[str, Any]:
         "controller": session.controller,
         "gains": msgspec.to_builtins(session.gains),
         "priority": session.priority,
+        "mismatch": msgspec.to_builtins(session.mismatch),
         "seed": session.scenario.seed,
         "events": msgspec.to_builtins(session.log),
         "urdf": robot.spec.urdf,

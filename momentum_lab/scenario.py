@@ -17,6 +17,7 @@ from momentum_lab.momentum.directions import directions
 from momentum_lab.paths import ASSETS
 from momentum_lab.physics.engines import Engine
 from momentum_lab.physics.ground import check_motion
+from momentum_lab.physics.mismatch import Mismatch
 from momentum_lab.physics.plate import AXES, Course, Friction, FrictionChange, Plate, PlateMotion
 from momentum_lab.physics.push import Push, Shape
 
@@ -43,6 +44,7 @@ _PARTS: dict[str, type[msgspec.Struct]] = {
     "ground": Plate,
     "motions": PlateMotion,
     "changes": FrictionChange,
+    "mismatch": Mismatch,
 }
 _WORDS = {
     "float": "number",
@@ -82,7 +84,8 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         position: where on the ground the robot starts (x, y), m.
         heading_deg: where it faces, degrees about the vertical.
         engine: which physics answers.
-        seed: seed of everything random in the run; recorded, and so far nothing is random.
+        mismatch: how the simulated robot differs from the one its controller believes in.
+        seed: seed of everything random in the run: the noise of sensors.
         timestep: length of a tick of control and physics, s.
         beside: what a second robot beside the first does differently; None: there is none.
     """
@@ -107,6 +110,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ground_sense: GroundSense = "told"
     position: tuple[Coordinate, Coordinate] = (0.0, 0.0)
     heading_deg: Annotated[float, msgspec.Meta(ge=-360.0, le=360.0)] = 0.0
+    mismatch: Mismatch = Mismatch()
     engine: Engine = "pinocchio"
     seed: Annotated[int, msgspec.Meta(ge=0, le=MAX_SEED)] = 0
     timestep: Annotated[float, msgspec.Meta(ge=1e-4, le=2e-3)] = 1e-3

@@ -34,6 +34,7 @@ from momentum_lab.events import (
     SetFriction,
     SetGain,
     SetGroundSense,
+    SetMismatch,
     SetMotion,
     SetPriority,
     StopGround,
@@ -42,9 +43,12 @@ from momentum_lab.momentum.directions import Directions, directions
 from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.observe import Tick, observe
-from momentum_lab.physics.engines import check_ground, world
+from momentum_lab.physics.engines import check_ground, check_mismatch, world
 from momentum_lab.physics.ground import Ground, checked_friction
+from momentum_lab.physics.mismatch import EXACT, Mismatch, real_robot, with_error
+from momentum_lab.physics.motors import Line, delayed, ticks_late
 from momentum_lab.physics.push import Push
+from momentum_lab.physics.sensors import measured
 from momentum_lab.physics.simulator import Step
 from momentum_lab.recording import Layout, Recording, Sample
 from momentum_lab.robot.model import RobotModel
@@ -106,6 +110,7 @@ class Session:
     motion: str
     angular_goal: AngularGoal
     ground_sense: GroundSense
+    mismatch: Mismatch
     controller: str
     gains: Any
     fall: Fall | None
@@ -120,6 +125,7 @@ class Session:
     _controller: Controller
     _memory: Any
     _torque: np.ndarray | None
+    _line: Line
     _taken_over: bool
     _handover: Handover | None
     _tick_of_run: int
@@ -144,6 +150,8 @@ class Session:
         self.recording = Recording(Layout.of(self.robot), capacity or self.scenario_ticks)
         self.priority = scenario.priority
         self.ground_sense = scenario.ground_sense
+        self.mismatch = scenario.mismatch
+        check_mismatch(scenario.engine, scenario.mismatch)
         self.controlled = directions(scenario.controlled)
         self.log: list[LoggedEvent] = []
         self.ticks = 0
@@ -165,8 +173,8 @@ class Session:
 
     @property
     def dynamics(self) -> Dynamics:
-        """The present state with everything computed."""
-        return self.robot.at(self.state)
+        """The present state of the robot that is simulated, with everything computed."""
+        return self._real.at(self.state)
 
     @property
     def ground(self) -> Ground:
@@ -199,10 +207,11 @@ class Session:
             SimulationError: the state is not finite any more; the recording holds everything before.
         """
         self._drain_inbox()
-        dynamics = self.robot.at(self.state)
+        dynamics = self.dynamics
         plates = self._ground.at(self.time)
-        output = self._control(dynamics, plates)
-        step = self._simulator.step(dynamics, output.torque, self.pushes, self.time)
+        output = self._control(self._believed(dynamics), plates)
+        torque, self._line = delayed(self._line, output.torque, self._ticks_late)
+        step = self._simulator.step(dynamics, torque, self.pushes, self.time)
         self.fall = self.fall or self._fall(dynamics, step, plates)
         sample = self._record(dynamics, output, step, plates)
         self._advance(output, step)
@@ -221,13 +230,20 @@ class Session:
         self.ticks = snapshot.ticks
         self.log = [entry for entry in self.log if entry.tick < snapshot.ticks]
         self._inbox.clear()
-        self._simulator = world(self.scenario.engine, self.robot, self._ground, self.scenario.timestep)
+        self._build()
 
     def _drain_inbox(self) -> None:
         while self._inbox:
             event = self._inbox.popleft()
             self.log.append(LoggedEvent(self.ticks, event))
             self._apply(event)
+
+    def _believed(self, dynamics: Dynamics) -> Dynamics:
+        """The state as the controller sees it: measured, and computed with the robot it believes in."""
+        if self.mismatch == EXACT:
+            return dynamics
+        seed, tick = self.scenario.seed, self._tick_of_run
+        return self.robot.at(measured(self.robot, dynamics.state, self.mismatch, seed, tick))
 
     def _control(self, dynamics: Dynamics, plates: FootGround) -> ControlOutput:
         """The controller's answer; a robot that has fallen goes limp."""
@@ -271,7 +287,7 @@ class Session:
 
     def _record(self, dynamics: Dynamics, output: ControlOutput, step: Step, plates: FootGround) -> Sample:
         tick = Tick(
-            self.robot,
+            self._real,
             self.time,
             self.scenario.timestep,
             dynamics,
@@ -324,6 +340,8 @@ class Session:
                 check_ground(self.scenario.engine, ground)
             case SetGroundSense(sense):
                 ground_sense(sense)
+            case SetMismatch(name, value):
+                check_mismatch(self.scenario.engine, with_error(self.mismatch, name, value))
             case SelectController(name):
                 controller_entry(name)
             case ApplyPush(push):
@@ -348,7 +366,7 @@ class Session:
                 self._taken_over = True
             case SelectController(name):
                 self._select(name)
-                self._memory = self._controller.initial_memory(self.dynamics)
+                self._memory = self._controller.initial_memory(self._believed(self.dynamics))
                 self._taken_over = True
             case SetMotion(name):
                 self._move(name, self.angular_goal, self.time)
@@ -364,6 +382,9 @@ class Session:
             case SetGroundSense(sense):
                 self.ground_sense = ground_sense(sense)
                 self._taken_over = True
+            case SetMismatch(name, value):
+                self.mismatch = with_error(self.mismatch, name, value)
+                self._build()
             case ApplyPush(push):
                 now = msgspec.structs.replace(self._checked_push(push), start=self.time)
                 self.pushes = (*self.pushes, now)
@@ -380,7 +401,13 @@ class Session:
     def _change(self, ground: Ground) -> None:
         """Stand on another ground from now on."""
         self._ground = ground
-        self._simulator = world(self.scenario.engine, self.robot, ground, self.scenario.timestep)
+        self._build()
+
+    def _build(self) -> None:
+        """The robot that is simulated and its world, out of what is the case."""
+        self._real = real_robot(self.robot, self.mismatch)
+        self._ticks_late = ticks_late(self.mismatch.torque_delay_ms, self.scenario.timestep)
+        self._simulator = world(self.scenario.engine, self._real, self._ground, self.scenario.timestep)
 
     def _select(self, name: str) -> None:
         entry = controller_entry(name)
@@ -401,8 +428,9 @@ class Session:
         self._ground = self._first_ground
         self._known = self._ground.at(0.0)
         self._foot_wrench = np.zeros((len(self.robot.soles), 6))
-        self._simulator = world(self.scenario.engine, self.robot, self._ground, self.scenario.timestep)
-        self._memory = self._controller.initial_memory(self.dynamics)
+        self._line = ()
+        self._build()
+        self._memory = self._controller.initial_memory(self._believed(self.dynamics))
         self._torque = self._handover = None
         self._taken_over = False
         self.recording.clear()

@@ -31,6 +31,7 @@ from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import SimulationError
 from momentum_lab.experiments.figures import FIGURES
 from momentum_lab.experiments.push_limit import PushLimit
+from momentum_lab.physics.mismatch import Mismatch
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import load_trace
 from momentum_lab.robot.catalog import robot_names
@@ -115,6 +116,23 @@ BAD_VALUES = [
         "--set: got linear_damping; allowed: GAIN=VALUE, such as linear_damping=8",
     ),
     ("run stand --set =8", "--set: got =8; allowed: GAIN=VALUE, such as linear_damping=8"),
+    (
+        "run stand --mismatch mass_error",
+        "--mismatch: got mass_error; allowed: NAME=VALUE, such as mass_error=0.1",
+    ),
+    (
+        "run stand --mismatch mass_error=0.31",
+        "--mismatch mass_error: got 0.31; allowed: a number from -0.3 to 0.3",
+    ),
+    (
+        "run stand --mismatch torque_delay_ms=nan",
+        "--mismatch torque_delay_ms: got nan; allowed: a number from 0 to 5 ms",
+    ),
+    (
+        "run stand --mismatch mass=0.1",
+        "--mismatch: got mass; allowed: one of mass_error, joint_friction, torque_delay_ms, encoder_noise, "
+        "imu_noise, torque_scale",
+    ),
     (
         "run stand --set linear_damping=8/s",
         "--set linear_damping: got 8/s; allowed: a number from 0 to 60 1/s",
@@ -228,6 +246,11 @@ def test_options_change_their_fields() -> None:
     assert scenario == Scenario(
         "stand", load_scenario("stand").title, "g1", priority=0.5, seconds=2.0, seed=9, gains=gains
     )
+
+
+def test_mismatch_changes_what_it_names() -> None:
+    words = "stand --mismatch mass_error=-0.1 --mismatch torque_delay_ms=2"
+    assert chosen(*words.split()).mismatch == Mismatch(mass_error=-0.1, torque_delay_ms=2.0)
 
 
 def test_push_replaces_the_scenarios_pushes() -> None:

@@ -20,10 +20,12 @@ from momentum_lab.events import (
     SetDirections,
     SetGain,
     SetGroundSense,
+    SetMismatch,
     SetMotion,
     SetPriority,
 )
 from momentum_lab.momentum.directions import directions, text_of
+from momentum_lab.physics.mismatch import EXACT, Mismatch, changes, with_error
 from momentum_lab.session import Session
 
 
@@ -39,6 +41,7 @@ class Chosen:
     angular_goal: AngularGoal
     gains: dict[str, float]
     ground_sense: GroundSense = "told"
+    mismatch: Mismatch = EXACT
 
     def until(self, other: Chosen) -> list[SessionEvent]:
         """The events that lead from these choices to others."""
@@ -57,6 +60,7 @@ class Chosen:
             events.append(SetMotion(other.motion))
         if other.ground_sense != self.ground_sense:
             events.append(SetGroundSense(other.ground_sense))
+        events += [SetMismatch(*change) for change in changes(self.mismatch, other.mismatch)]
         if other.angular_goal != self.angular_goal:
             events.append(SetAngularGoal(other.angular_goal))
         return events + [SetGain(name, value) for name, value in other.gains.items() if value != gains[name]]
@@ -87,7 +91,7 @@ def chosen_of(session: Session, waiting: Iterable[SessionEvent]) -> Chosen:
     priority, controlled = session.priority, text_of(session.controlled)
     motion, angular_goal = session.motion, session.angular_goal
     controller, planner, gains = session.controller, session.planner, values_of(session.gains)
-    sense = session.ground_sense
+    sense, mismatch = session.ground_sense, session.mismatch
     for event in waiting:
         match event:
             case SetPriority(value):
@@ -102,12 +106,14 @@ def chosen_of(session: Session, waiting: Iterable[SessionEvent]) -> Chosen:
                 angular_goal = goal
             case SetGroundSense(told_or_felt):
                 sense = told_or_felt
+            case SetMismatch(name, value):
+                mismatch = with_error(mismatch, name, value)
             case SetGain(name, value):
                 gains[name] = value
             case SelectController(name):
                 controller, gains = name, values_of(controller_entry(name).gains)
                 planner = planner if planner in controller_entry(name).planners else OWN
-    return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains, sense)
+    return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains, sense, mismatch)
 
 
 def values_of(gains: object) -> dict[str, float]:

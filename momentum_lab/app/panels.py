@@ -15,6 +15,7 @@ from momentum_lab.app.learn_panel import LearnPanel
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
+from momentum_lab.app.mismatch_panel import MismatchPanel
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robots import LoadedRobot
@@ -76,6 +77,7 @@ class Panels:
             self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control", viser.Icon.ADJUSTMENTS):
             self.control = ControlPanel(gui, post, choices, truth)
+            self.mismatch = MismatchPanel(gui, post, truth)
         with group.add_tab("View", viser.Icon.EYE):
             ViewPanel(gui, self.settings, look, redraw)
         with group.add_tab("Runs", viser.Icon.VERSIONS):

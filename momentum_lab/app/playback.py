@@ -159,6 +159,7 @@ class Playback:
             uneven=not session.ground.is_floor,
             floor=float(session.ground.floor.origin[2]),
             ground_sense=chosen.ground_sense,
+            mismatch=chosen.mismatch,
             behind=self._behind * session.scenario.timestep,
             first_push=_first(session.pushes, self.shown.number("time")),
             beside=None if self.beside is None else self.beside.beside,
@@ -305,6 +306,7 @@ class Playback:
             angular_goal=truth.angular_goal,
             ground_sense=truth.ground_sense,
             gains=gains,
+            mismatch=truth.mismatch,
             beside=truth.beside,
         )
 

@@ -226,6 +226,7 @@ class Visitor:
         panels.control.follow(truth)
         panels.learn.follow(truth, sample.number("time"), frame.lesson)
         panels.ground.follow(truth)
+        panels.mismatch.follow(truth)
         panels.control.see(sample)
         if truth.fall is None:
             panels.push.see(sample)

@@ -10,6 +10,7 @@ from momentum_lab.app.lesson_wire import LessonEvent, LessonNews
 from momentum_lab.beside import Beside
 from momentum_lab.control.ground_sense import GroundSense
 from momentum_lab.control.motion import AngularGoal
+from momentum_lab.physics.mismatch import EXACT, Mismatch
 from momentum_lab.physics.push import Push
 
 
@@ -54,6 +55,7 @@ class Truth(msgspec.Struct, frozen=True):
         uneven: whether the ground under the feet is anything but the floor.
         floor: height of the floor under everything else, m.
         ground_sense: whether the robot is told how the ground moves.
+        mismatch: how the simulated robot differs from the one its controller believes in.
         behind: how long before the present end of the run the sample is that is looked at, s.
         first_push: the first push since the robot stood up; None before it has begun.
         beside: what a robot beside this one does differently; None when there is none.
@@ -81,6 +83,7 @@ class Truth(msgspec.Struct, frozen=True):
     uneven: bool = False
     floor: float = 0.0
     ground_sense: GroundSense = "told"
+    mismatch: Mismatch = EXACT
     behind: float = 0.0
     first_push: Push | None = None
     beside: Beside | None = None

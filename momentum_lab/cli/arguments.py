@@ -11,6 +11,7 @@ from momentum_lab.cli.values import (
     ABOVE_ZERO,
     controlled_directions,
     gain_setting,
+    mismatch_setting,
     number,
     one_or_all,
     whole_number,
@@ -250,6 +251,14 @@ def _choice_arguments(parser: _Parser) -> None:
         metavar="x",
         type=number("--friction", ABOVE_ZERO, MAX_FRICTION, "Coulomb coefficient of the floor"),
         help="Coulomb coefficient of the floor",
+    )
+    parser.add_argument(
+        "--mismatch",
+        type=mismatch_setting,
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="let the real robot differ from its model: mass_error=0.1, torque_delay_ms=2; may be repeated",
     )
 
 

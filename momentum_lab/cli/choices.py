@@ -11,6 +11,7 @@ from momentum_lab.cli.values import as_number
 from momentum_lab.control.gains import with_gains
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import GainError, InputError
+from momentum_lab.physics.mismatch import Mismatch, with_error
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario, changed, load_scenario
 
@@ -42,6 +43,7 @@ def chosen_scenario(args: Namespace) -> Scenario:
     changes: dict[str, Any] = {name: given[name] for name in _FIELDS if given.get(name) is not None}
     changes["gains"] = _gains(given.get("set", []), args.controller, scenario)
     changes["pushes"] = _pushes(given, scenario)
+    changes["mismatch"] = _mismatch(given.get("mismatch", []), scenario.mismatch)
     return changed(scenario, **changes)
 
 
@@ -59,6 +61,19 @@ def _gains(settings: list[tuple[str, str]], controller: str | None, scenario: Sc
             argument, given = ("--set", name) if unknown else (f"--set {name}", text)
             raise GainError(argument, given, error.allowed) from error
     return {**kept, **values}
+
+
+def _mismatch(settings: list[tuple[str, str]], mismatch: Mismatch) -> Mismatch:
+    """The scenario's mismatch with what was set."""
+    for name, text in settings:
+        value = as_number(text)
+        try:
+            mismatch = with_error(mismatch, name, value)
+        except InputError as error:
+            unknown = error.argument == "mismatch"
+            argument, given = ("--mismatch", name) if unknown else (f"--mismatch {name}", text)
+            raise InputError(argument, given, error.allowed) from error
+    return mismatch
 
 
 def _pushes(given: dict[str, Any], scenario: Scenario) -> tuple[Push, ...]:

@@ -66,6 +66,18 @@ def gain_setting(text: str) -> tuple[str, str]:
     return name, value
 
 
+def mismatch_setting(text: str) -> tuple[str, str]:
+    """`NAME=VALUE` as its two words.
+
+    Raises:
+        InputError: it is not of that form.
+    """
+    name, equals, value = text.partition("=")
+    if not (name and equals and value):
+        raise InputError("--mismatch", text, "NAME=VALUE, such as mass_error=0.1")
+    return name, value
+
+
 def controlled_directions(text: str) -> str:
     """Directions of momentum, as they were typed.
 

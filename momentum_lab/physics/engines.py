@@ -6,7 +6,9 @@ from typing import Literal, Protocol
 
 import numpy as np
 
+from momentum_lab.errors import InputError
 from momentum_lab.physics.ground import Ground
+from momentum_lab.physics.mismatch import Mismatch
 from momentum_lab.physics.mujoco_engine import MujocoSimulator, check_level
 from momentum_lab.physics.push import Push
 from momentum_lab.physics.simulator import Simulator, Step
@@ -48,3 +50,13 @@ def check_ground(engine: Engine, ground: Ground) -> None:
     """
     if engine == "mujoco":
         check_level(ground)
+
+
+def check_mismatch(engine: Engine, mismatch: Mismatch) -> None:
+    """Refuse what an engine cannot make of a robot.
+
+    Raises:
+        InputError: the engine is MuJoCo, and the joints have friction.
+    """
+    if engine == "mujoco" and mismatch.joint_friction:
+        raise InputError("mismatch joint_friction", mismatch.joint_friction, "0 with the engine mujoco")

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from momentum_lab.compiled import compiled
+from momentum_lab.physics.implicit_torque import ImplicitTorque
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -16,28 +15,7 @@ _TIME = 0.01
 _GIVES_WAY = 0.02
 
 
-@dataclass(frozen=True, slots=True)
-class JointStops:
-    """The joints beyond their limits (K) and what their stops do during one step.
-
-    Attributes:
-        rows: their rows among all velocities (K,).
-        torque: of the springs and dampers if the joints kept their speed (K,), N m.
-        added_inertia: what makes springs and dampers implicit in the step (K,), kg m^2.
-    """
-
-    rows: np.ndarray
-    torque: np.ndarray
-    added_inertia: np.ndarray
-
-    def felt_torque(self, acceleration: np.ndarray) -> np.ndarray:
-        """Torques on all joints (na,), N m, for the acceleration (nv,) that the step has brought about."""
-        felt = np.zeros(acceleration.size)
-        felt[self.rows] = self.torque - self.added_inertia * acceleration[self.rows]
-        return felt[6:]
-
-
-def joint_stops(robot: RobotModel, dynamics: Dynamics, timestep: float) -> JointStops | None:
+def joint_stops(robot: RobotModel, dynamics: Dynamics, timestep: float) -> ImplicitTorque | None:
     """The stops that act in a step of a length (s); None when every joint is within its limits.
 
     With k = I / T^2, d = 2 I / T and I the larger of H_jj and what makes the spring as strong as the motor at
@@ -54,7 +32,7 @@ def joint_stops(robot: RobotModel, dynamics: Dynamics, timestep: float) -> Joint
     inertia = np.maximum(dynamics.mass_matrix[rows, rows], as_strong)
     stiffness, damping = inertia / _TIME**2, 2.0 * inertia / _TIME
     torque = -stiffness * excess[beyond] - (damping + timestep * stiffness) * dynamics.state.v[rows]
-    return JointStops(rows, torque, timestep * damping + timestep**2 * stiffness)
+    return ImplicitTorque(rows, torque, timestep * damping + timestep**2 * stiffness)
 
 
 @compiled("boolean(f8[::1], f8[::1], f8[::1])")

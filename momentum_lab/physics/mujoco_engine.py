@@ -52,6 +52,7 @@ class MujocoSimulator:
         self.timestep = timestep
         self._mujoco = mujoco
         self._model = falling_model(robot, timestep)
+        self._weigh(robot.inertia_scale)
         self._model.opt.tolerance = _TOLERANCE
         self._model.opt.impratio = _FRICTION_STIFFNESS
         self._model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_WARMSTART
@@ -159,6 +160,13 @@ class MujocoSimulator:
             dynamics.com_in_world,
             self._weight,
         )
+
+    def _weigh(self, scale: float) -> None:
+        """Make links heavier than the URDF says by a factor."""
+        if scale != 1.0:
+            self._model.body_mass *= scale
+            self._model.body_inertia *= scale
+            self._mujoco.mj_setConst(self._model, self._mujoco.MjData(self._model))
 
     def _stop_torque(self) -> np.ndarray:
         """What the ends of the joints' ranges add to the motors' torques (na,), N m."""

@@ -12,7 +12,9 @@ from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.wrench import shift_wrench, sum_wrenches
 from momentum_lab.physics.contact import solve_contact
 from momentum_lab.physics.ground import Ground
-from momentum_lab.physics.joint_stops import JointStops, joint_stops
+from momentum_lab.physics.implicit_torque import ImplicitTorque
+from momentum_lab.physics.joint_friction import joint_friction
+from momentum_lab.physics.joint_stops import joint_stops
 from momentum_lab.physics.push import Push, apply_pushes
 from momentum_lab.physics.touch import BodyPoints, SolePoints, Touches, together
 from momentum_lab.robot.model import RobotModel
@@ -26,7 +28,7 @@ class Step:
     Attributes:
         state: the state at its end.
         torque: joint torques after the motors' limits (na,), N m.
-        stop_torque: what the ends of the joints' ranges add to them (na,), N m.
+        stop_torque: what friction and the ends of the joints' ranges add to them (na,), N m.
         foot_wrench: ground on each foot about the sole origin, world axes (F, 6), N and N m.
         other_wrench: ground on everything that is not a sole, about the world origin (6,), N and N m.
         push_wrench: pushes on the robot about the world origin (6,), N and N m.
@@ -61,6 +63,7 @@ class Simulator:
         self._soles = SolePoints(robot, timestep)
         self._bodies = BodyPoints(robot, timestep)
         self._push_data = robot.model.createData()
+        self._rubbing = bool(robot.joint_friction.any())
 
     def step(self, dynamics: Dynamics, torque: np.ndarray, pushes: tuple[Push, ...], time: float) -> Step:
         """The step from `dynamics.state` at `time` under joint torques (na,) and the pushes of the run.
@@ -74,8 +77,8 @@ class Simulator:
         push = apply_pushes(self.robot, self._push_data, dynamics, pushes, time, self.timestep)
         if push is not None:
             force += push.generalized
-        stops = joint_stops(self.robot, dynamics, self.timestep)
-        mass_matrix = dynamics.mass_matrix if stops is None else _stopped(dynamics.mass_matrix, force, stops)
+        passive = self._passive(dynamics)
+        mass_matrix = _braked(dynamics.mass_matrix, force, passive) if passive else dynamics.mass_matrix
         touches = self._touches(dynamics, time)
         solution = solve_contact(
             mass_matrix, self.timestep * force, dynamics.state.v, touches.contacts, self.timestep
@@ -97,7 +100,7 @@ class Simulator:
         return Step(
             state=state,
             torque=torque,
-            stop_torque=self._stop_torque(dynamics, state, stops),
+            stop_torque=self._stop_torque(dynamics, state, passive),
             foot_wrench=feet,
             other_wrench=others,
             push_wrench=pushed,
@@ -111,17 +114,27 @@ class Simulator:
         bodies = self._bodies.touches(dynamics.state, self.ground.floor)
         return soles if bodies is None else together(soles, bodies)
 
-    def _stop_torque(self, dynamics: Dynamics, state: State, stops: JointStops | None) -> np.ndarray:
-        if stops is None:
-            return np.zeros(self.robot.na)
-        return stops.felt_torque((state.v - dynamics.state.v) / self.timestep)
+    def _passive(self, dynamics: Dynamics) -> list[ImplicitTorque]:
+        """What joints do of themselves: their stops, and their friction if they have any."""
+        stops = joint_stops(self.robot, dynamics, self.timestep)
+        passive = [] if stops is None else [stops]
+        if self._rubbing:
+            passive.append(joint_friction(self.robot.joint_friction, dynamics, self.timestep))
+        return passive
+
+    def _stop_torque(self, dynamics: Dynamics, state: State, passive: list[ImplicitTorque]) -> np.ndarray:
+        felt = np.zeros(self.robot.na)
+        for torque in passive:
+            felt += torque.felt_torque((state.v - dynamics.state.v) / self.timestep)
+        return felt
 
 
-def _stopped(mass_matrix: np.ndarray, force: np.ndarray, stops: JointStops) -> np.ndarray:
-    """Mass matrix (nv, nv) with joint stops; the force (nv,) is given theirs, too."""
+def _braked(mass_matrix: np.ndarray, force: np.ndarray, passive: list[ImplicitTorque]) -> np.ndarray:
+    """Mass matrix (nv, nv) with implicit torques of the joints; the force (nv,) is given theirs, too."""
     mass_matrix = mass_matrix.copy()
-    mass_matrix[stops.rows, stops.rows] += stops.added_inertia
-    force[stops.rows] += stops.torque
+    for torque in passive:
+        mass_matrix[torque.rows, torque.rows] += torque.added_inertia
+        force[torque.rows] += torque.torque
     return mass_matrix
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -65,6 +66,8 @@ class RobotModel:
         self.position_lower = self.model.lowerPositionLimit[7:].copy()
         self.position_upper = self.model.upperPositionLimit[7:].copy()
         self.effort_limit = self.model.effortLimit[_BASE_DOF:].copy()
+        self.joint_friction = np.zeros(self.na)
+        self.inertia_scale = 1.0
         self.mass = float(pin.computeTotalMass(self.model))
         self._gravity = self.model.gravity.linear.copy()
         self._frames = Frames.of(self.model, [*(sole.frame for sole in self.soles), self.pelvis])
@@ -75,6 +78,26 @@ class RobotModel:
     def named(cls, name: str) -> RobotModel:
         """The robot of that name in the catalog, or of the TOML file at that path."""
         return cls(load_spec(name))
+
+    def altered(self, inertia: float, effort: float, friction: float) -> RobotModel:
+        """A robot like this one, of other weight and with other motors.
+
+        Args:
+            inertia: mass and inertia of each of its links, as a multiple of this one's; rotors stay.
+            effort: its torque limits, as a multiple of this one's.
+            friction: Coulomb friction of its joints, as a part of this one's torque limits.
+        """
+        robot = copy.copy(self)
+        robot.model = self.model.copy()
+        for link in robot.model.inertias:
+            link.mass, link.inertia = inertia * link.mass, inertia * link.inertia
+        robot.inertia_scale = inertia * self.inertia_scale
+        robot.data = robot.model.createData()
+        robot._memory = memory_of(robot.data)
+        robot.mass = float(pin.computeTotalMass(robot.model))
+        robot.effort_limit = effort * self.effort_limit
+        robot.joint_friction = friction * self.effort_limit
+        return robot
 
     @property
     def nq(self) -> int:

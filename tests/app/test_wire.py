@@ -34,6 +34,7 @@ EVENTS = [
     events.MoveGround(PlateMotion("pitch", -5.0, "step", 1.5), "right"),
     events.StopGround(),
     events.SetGroundSense("felt"),
+    events.SetMismatch("mass_error", -0.1),
     events.ApplyPush(Push(force=217.0, body="head", shape="half-sine")),
     events.Reset(),
     events.Play(),
