@@ -27,6 +27,7 @@ MAX_SECONDS = 3600.0
 MAX_SEED = 2**32 - 1
 MAX_DISTANCE = 1000.0
 MAX_LEAN = 0.1
+# In the air for 0.78 s: a loop of the legs in less asks for more than the motors of TALOS have.
 MAX_DROP = 3.0
 ENGINES = get_args(Engine)
 

@@ -182,6 +182,8 @@ def _loop(axes: Any, session: Session) -> None:
     axes.plot(ways[:, 0], ways[:, 1], color=COP, label="gone")
     axes.plot(*ways[0], "o", color=INK, ms=7, label="start and end")
     for tick in (np.searchsorted(np.cumsum(np.abs(np.diff(ways, axis=0)).sum(axis=1)), (1.0, 3.0))).tolist():
+        if tick + 8 >= len(ways):
+            continue  # a run that broke off before
         axes.annotate(
             "",
             ways[tick + 8],

@@ -4,7 +4,7 @@ import pytest
 
 from momentum_lab.errors import InputError
 from momentum_lab.experiments.figures import FIGURES, figure_named
-from momentum_lab.scenario import changed, load_scenario
+from momentum_lab.scenario import changed, load_scenario, sides
 from tests.experiments.played import played
 
 
@@ -12,7 +12,8 @@ from tests.experiments.played import played
 def test_the_app_opens_the_run_of_the_figure(name: str) -> None:
     """The scenario of that name is the first run, but for the controllers that Table 1 compares."""
     first = next(iter(figure_named(name).scenarios(None).values()))
-    assert first == changed(load_scenario(name), controller=first.controller, priority=first.priority)
+    here, *_ = sides(load_scenario(name))
+    assert first == changed(here, controller=first.controller, priority=first.priority)
 
 
 @pytest.mark.parametrize("name", FIGURES)
