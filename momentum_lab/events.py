@@ -20,6 +20,12 @@ class SetGain(msgspec.Struct, frozen=True, tag=True):
     value: float
 
 
+class SetGains(msgspec.Struct, frozen=True, tag=True):
+    """Change several gains of the current controller in the same tick: a preset, a step back or forth."""
+
+    values: dict[str, float]
+
+
 class SetPriority(msgspec.Struct, frozen=True, tag=True):
     """Change which momentum is kept: 0 linear, 1 angular."""
 
@@ -60,6 +66,12 @@ class ApplyPush(msgspec.Struct, frozen=True, tag=True):
     """Push the robot now; the push's own start is ignored."""
 
     push: Push
+
+
+class ApplyPushes(msgspec.Struct, frozen=True, tag=True):
+    """Push the robot several times; each push's start counts from now, s."""
+
+    pushes: tuple[Push, ...]
 
 
 class Reset(msgspec.Struct, frozen=True, tag=True):
@@ -113,6 +125,7 @@ class Branch(msgspec.Struct, frozen=True, tag=True):
 
 SessionEvent = (
     SetGain
+    | SetGains
     | SetPriority
     | SetDirections
     | SelectPlanner
@@ -120,6 +133,7 @@ SessionEvent = (
     | SetAngularGoal
     | SelectController
     | ApplyPush
+    | ApplyPushes
     | Reset
 )
 PlaybackEvent = Play | Pause | StepOnce | SetSpeed | SelectRobot | LoadScenario | LookBack | Branch

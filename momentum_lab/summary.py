@@ -7,6 +7,7 @@ import math
 import msgspec
 import numpy as np
 
+from momentum_lab.finished import FinishedRun
 from momentum_lab.headless import Timing
 from momentum_lab.momentum.pendulum import pendulum_frequency, pendulum_impulse_bound
 from momentum_lab.momentum.support import distance_to_edge, support_margin, support_polygon
@@ -76,7 +77,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     error: str | None
 
 
-def summarize(session: Session, timing: Timing) -> Summary:
+def summarize(session: Session | FinishedRun, timing: Timing) -> Summary:
     """The summary of a session that has run.
 
     Args:
@@ -113,7 +114,7 @@ def summarize(session: Session, timing: Timing) -> Summary:
     )
 
 
-def _fall(session: Session, timing: Timing) -> tuple[bool, float | None, str | None]:
+def _fall(session: Session | FinishedRun, timing: Timing) -> tuple[bool, float | None, str | None]:
     if session.fall is not None:
         return True, session.fall.time, session.fall.reason
     if timing.error is not None:
@@ -121,12 +122,12 @@ def _fall(session: Session, timing: Timing) -> tuple[bool, float | None, str | N
     return False, None, None
 
 
-def _com_speed(session: Session) -> float:
+def _com_speed(session: Session | FinishedRun) -> float:
     """Speed of the CoM at the last sample, m/s."""
     return float(np.linalg.norm(session.recording.latest["com_velocity"]))
 
 
-def _impulse_ratio(session: Session, push: Push) -> float:
+def _impulse_ratio(session: Session | FinishedRun, push: Push) -> float:
     """J over m omega delta * omega T / (1 - exp(-omega T)), delta and omega from the state at the push.
 
     Zero for a push that the recording does not hold or that did not meet a standing robot.
@@ -138,24 +139,24 @@ def _impulse_ratio(session: Session, push: Push) -> float:
         return 0.0
     com = recording.column("com")[row]
     poses = recording.column("sole_pose")[row]
-    polygon = support_polygon(_corners_in_world(session, poses)[stance].reshape(-1, 3))
+    polygon = support_polygon(corners_in_world(session, poses)[stance].reshape(-1, 3))
     distance = distance_to_edge(com[:2], push.direction[:2], polygon)
     omega = pendulum_frequency(float(com[2] - poses[stance, 2].min()))
     bound = pendulum_impulse_bound(session.robot.mass, omega, distance, elapsed)
     return push.delivered(session.time) / bound if bound > 0.0 else 0.0
 
 
-def _peak_com_excursion(session: Session) -> float:
+def _peak_com_excursion(session: Session | FinishedRun) -> float:
     com = session.recording.column("com")[:, :2]
     return _largest(np.linalg.norm(com - com[0], axis=1))
 
 
-def _min_cop_margin(session: Session, until: float) -> float | None:
+def _min_cop_margin(session: Session | FinishedRun, until: float) -> float | None:
     """Smallest margin of the measured CoP in the hull of the soles that carry more than 1 N, m."""
     recording = session.recording
     standing = recording.column("time") < until
     pressed = recording.column("foot_wrench_measured")[standing, :, 2] > _LEAST_SUPPORT
-    corners = _corners_in_world(session, recording.column("sole_pose")[standing])
+    corners = corners_in_world(session, recording.column("sole_pose")[standing])
     cops = recording.column("cop_measured")[standing]
     margins = [
         support_margin(cop, support_polygon(points[feet].reshape(-1, 3)))
@@ -165,7 +166,7 @@ def _min_cop_margin(session: Session, until: float) -> float | None:
     return min(margins, default=None)
 
 
-def _corners_in_world(session: Session, poses: np.ndarray) -> np.ndarray:
+def corners_in_world(session: Session | FinishedRun, poses: np.ndarray) -> np.ndarray:
     """Corners of the soles (..., F, 4, 3) at sole poses (..., F, 7), m.
 
     x = p + 2 w (u x c) + 2 u x (u x c) + c for a corner c and the quaternion (u, w).

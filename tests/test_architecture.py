@@ -24,6 +24,9 @@ FLOORS: tuple[frozenset[str], ...] = (
         {
             "scenario",
             "share_code",
+            "run_file",
+            "replay",
+            "finished",
             "events",
             "observe",
             "recording",

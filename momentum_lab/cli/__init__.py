@@ -1,4 +1,4 @@
-"""The command line: momentum-lab app | run | lesson | figure | list | equations | bench.
+"""The command line: momentum-lab app | run | report | replay | lesson | figure | list | equations | bench.
 
 Exit codes: 0 the command did what was asked (a robot that falls is a result, not an error), 1 something broke
 down on the way or a figure's or lesson's claim or an equation does not hold, 2 bad input, 130 stopped by Ctrl+C. Bad
@@ -69,6 +69,14 @@ def _imported(name: str) -> Callable[[Namespace], int]:
         from momentum_lab.cli.run import run
 
         return run
+    if name == "report":
+        from momentum_lab.cli.report import report
+
+        return report
+    if name == "replay":
+        from momentum_lab.cli.replay import replay
+
+        return replay
     if name == "lesson":
         from momentum_lab.cli.lesson import lesson
 

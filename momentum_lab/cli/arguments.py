@@ -14,8 +14,8 @@ from momentum_lab.momentum.directions import directions
 from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
 from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 
-COMMANDS = ("app", "run", "lesson", "figure", "list", "equations", "bench")
-KINDS = ("robots", "controllers", "planners", "scenarios", "lessons", "figures", "gains")
+COMMANDS = ("app", "run", "report", "replay", "lesson", "figure", "list", "equations", "bench")
+KINDS = ("robots", "controllers", "planners", "scenarios", "lessons", "figures", "gains", "presets")
 _MAX_PORT = 65535
 _MAX_BENCH_SECONDS, _MAX_BENCH_MINUTES = 600.0, 60.0
 _ABOVE_ZERO = math.ulp(0.0)
@@ -136,6 +136,12 @@ def _parser() -> _Parser:
     for name, help, add in (
         ("app", "open the lab in the browser", _app_arguments),
         ("run", "run a scenario without a screen", _run_arguments),
+        ("report", "a run as one HTML file: figures, numbers, gains, checks, limits", _report_arguments),
+        (
+            "replay",
+            "play a run file or a trace again and say whether every bit is the same",
+            _replay_arguments,
+        ),
         (
             "lesson",
             "a guided lesson: a question, a prediction, an answer that is measured",
@@ -148,7 +154,7 @@ def _parser() -> _Parser:
         ),
         (
             "list",
-            "what there is: robots, controllers, planners, scenarios, lessons, figures, gains",
+            "what there is: robots, controllers, planners, scenarios, lessons, figures, gains, presets",
             _list_arguments,
         ),
         ("equations", "how exactly the chapter's equations hold on a robot", _equations_arguments),
@@ -163,6 +169,8 @@ def _parser() -> _Parser:
 def _usage(command: str) -> str:
     words = {
         "run": "run SCENARIO",
+        "report": "report SCENARIO --out FILE",
+        "replay": "replay FILE",
         "lesson": "lesson NAME",
         "figure": "figure NAME --out DIR",
         "list": f"list {'|'.join(KINDS)}",
@@ -171,7 +179,7 @@ def _usage(command: str) -> str:
 
 
 def _app_arguments(parser: _Parser) -> None:
-    parser.add_argument("--scenario", default="stand", metavar="S", help="what to start with")
+    parser.add_argument("--scenario", metavar="S", help="what to start with; otherwise stand")
     _choice_arguments(parser)
     _serving_arguments(parser)
 
@@ -189,6 +197,22 @@ def _serving_arguments(parser: _Parser) -> None:
 
 
 def _run_arguments(parser: _Parser) -> None:
+    _scenario_arguments(parser)
+    parser.add_argument("--out", metavar="FILE", help="save the trace as .npz")
+    parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+
+
+def _report_arguments(parser: _Parser) -> None:
+    _scenario_arguments(parser)
+    parser.add_argument("--out", metavar="FILE", help="where the report goes, an .html file")
+
+
+def _replay_arguments(parser: _Parser) -> None:
+    parser.add_argument("file", nargs="?", default="", metavar="FILE", help="a run file, or a trace.npz")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _scenario_arguments(parser: _Parser) -> None:
     parser.add_argument("scenario", nargs="?", default="", metavar="SCENARIO", help="a name, or a .toml file")
     _choice_arguments(parser)
     _push_arguments(parser)
@@ -216,8 +240,6 @@ def _run_arguments(parser: _Parser) -> None:
     parser.add_argument(
         "--seed", type=whole_number("--seed", 0, MAX_SEED), metavar="N", help="seed of random numbers"
     )
-    parser.add_argument("--out", metavar="FILE", help="save the trace as .npz")
-    parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
 
 
 def _push_arguments(parser: _Parser) -> None:
@@ -248,6 +270,10 @@ def _push_arguments(parser: _Parser) -> None:
 
 
 def _choice_arguments(parser: _Parser) -> None:
+    parser.add_argument("--code", metavar="CODE", help="a shared run instead of a scenario")
+    parser.add_argument(
+        "--preset", metavar="NAME", help="gains by name: soft, chapter-like, stiff, or your own"
+    )
     parser.add_argument("--robot", metavar="R", help="a name, or a robot's .toml file")
     parser.add_argument("--controller", metavar="C", help="who keeps the balance")
     parser.add_argument(

@@ -10,13 +10,14 @@ import msgspec
 from rich.console import Console
 from rich.table import Table
 
-from momentum_lab.cli.choices import chosen_scenario
+from momentum_lab.cli.choices import chosen_run
 from momentum_lab.cli.progress import interruptible, progress
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.headless import Timing, run_headless
 from momentum_lab.provenance import provenance
 from momentum_lab.recording import save_trace, writable_file
-from momentum_lab.scenario import Scenario
+from momentum_lab.replay import Agreement, Script, end_agreement, prepared
+from momentum_lab.run_file import Run
 from momentum_lab.session import Session
 from momentum_lab.summary import Summary, summarize
 
@@ -33,19 +34,15 @@ def run(args: Namespace) -> int:
         SimulationError: the simulation broke down before its first sample.
         KeyboardInterrupt: Ctrl+C.
     """
-    scenario = chosen_scenario(args)
+    chosen = chosen_run(args)
     out = None if args.out is None else writable_file(Path(args.out))
-    session = _session(scenario)
-    for push in scenario.pushes:
-        if push.start >= scenario.seconds:
-            _note(f"the push at {push.start:g} s comes after the end of the run at {scenario.seconds:g} s")
-    timing, stopped = _timed(session)
-    if timing.error is not None and not len(session.recording):
-        raise SimulationError(timing.error)
+    session, timing, stopped = played(chosen)
     if out is not None:
         save_trace(session.recording, provenance(session), out)
     if stopped:
         raise KeyboardInterrupt
+    if chosen.end:
+        _note(said(end_agreement(chosen, session)))
     summary = summarize(session, timing)
     if args.json:
         print(msgspec.json.encode(summary).decode())
@@ -55,6 +52,31 @@ def run(args: Namespace) -> int:
         return 0
     _note(timing.error)
     return 1
+
+
+def played(chosen: Run) -> tuple[Session, Timing, bool]:
+    """A run to its end or to Ctrl+C, with a bar on a terminal; and whether it was the latter.
+
+    Raises:
+        InputError: something in it is not possible here.
+        SimulationError: it broke down before its first sample.
+    """
+    session = _session(chosen)
+    end = chosen.length * session.scenario.timestep
+    for push in chosen.scenario.pushes:
+        if push.start >= end:
+            _note(f"the push at {push.start:g} s comes after the end of the run at {end:g} s")
+    timing, stopped = _timed(session, chosen)
+    if timing.error is not None and not len(session.recording):
+        raise SimulationError(timing.error)
+    return session, timing, stopped
+
+
+def said(agreement: Agreement) -> str:
+    """Whether the bits agree, in one line."""
+    if agreement.agrees:
+        return f"the same bits: {agreement.compared}"
+    return f"other bits: {agreement.compared}; {agreement.difference}"
 
 
 def show(summary: Summary, out: Path | None) -> None:
@@ -71,22 +93,24 @@ def _note(text: str) -> None:
     print(f"momentum-lab: {text}", file=sys.stderr)
 
 
-def _session(scenario: Scenario) -> Session:
+def _session(chosen: Run) -> Session:
     try:
-        return Session(scenario)
+        return prepared(chosen)
     except MemoryError as error:
-        raise InputError("seconds", scenario.seconds, "a run whose recording fits into memory") from error
+        raise InputError(
+            "seconds", chosen.scenario.seconds, "a run whose recording fits into memory"
+        ) from error
 
 
-def _timed(session: Session) -> tuple[Timing, bool]:
-    """Run a session to its end or to Ctrl+C; whether it was the latter."""
+def _timed(session: Session, chosen: Run) -> tuple[Timing, bool]:
+    """Play a run to its end or to Ctrl+C; whether it was the latter."""
     with interruptible() as stopped, progress(session.scenario.name) as report:
 
         def proceed(fraction: float) -> bool:
             report(fraction)
             return not stopped.is_set()
 
-        timing = run_headless(session, proceed)
+        timing = run_headless(session, proceed, Script(chosen).cue, chosen.length)
     return timing, stopped.is_set()
 
 
