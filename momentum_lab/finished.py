@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from momentum_lab.events import LoggedEvent
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Recording
 from momentum_lab.robot.model import RobotModel
@@ -64,6 +65,16 @@ class FinishedRun:
     def scenario(self) -> Scenario:
         """What was decided before the run."""
         return self.run.scenario
+
+    @property
+    def ticks(self) -> int:
+        """How long it has lasted since its session began."""
+        return self.run.ticks
+
+    @property
+    def log(self) -> tuple[LoggedEvent, ...]:
+        """What was done in it."""
+        return self.run.events
 
     @property
     def stance(self) -> tuple[int, ...]:

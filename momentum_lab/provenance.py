@@ -8,12 +8,13 @@ from typing import Any
 import msgspec
 
 from momentum_lab import __version__
+from momentum_lab.finished import FinishedRun
 from momentum_lab.session import Session
 
 _LIBRARIES = ("pin", "numpy", "placo", "daqp", "scipy", "example-robot-data")
 
 
-def provenance(session: Session) -> dict[str, Any]:
+def provenance(session: Session | FinishedRun) -> dict[str, Any]:
     """What the meta entry of a trace says, as plain data that goes to JSON.
 
     Versions; the scenario as it was run; controller, gains and priority as they are now; how many ticks it has

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from momentum_lab.events import SessionEvent
 from momentum_lab.headless import Timing, always, run_headless
 from momentum_lab.recording import Trace
 from momentum_lab.run_file import Run, fingerprint
@@ -22,9 +23,13 @@ class Script:
     """
 
     def __init__(self, run: Run) -> None:
-        self._at = defaultdict(list)
+        self._at: dict[int, list[SessionEvent]] = defaultdict(list)
         for entry in run.events:
             self._at[entry.tick].append(entry.event)
+
+    def at(self, tick: int) -> list[SessionEvent]:
+        """What was done at a tick."""
+        return self._at.get(tick, [])
 
     def cue(self, session: Session) -> None:
         """Post what was done at the tick that a session is about to begin.
@@ -32,7 +37,7 @@ class Script:
         Raises:
             InputError: the session cannot do it.
         """
-        for event in self._at.get(session.ticks, ()):
+        for event in self.at(session.ticks):
             session.post(event)
 
 

@@ -48,6 +48,11 @@ class Run(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return self.ticks or math.ceil(self.scenario.seconds / self.scenario.timestep - 1e-9)
 
 
+def as_run(first: Scenario | Run) -> Run:
+    """A scenario as a run in which nothing has been done yet; a run as it is."""
+    return first if isinstance(first, Run) else Run(first)
+
+
 def run_of(session: Session, waiting: Iterable[SessionEvent] = ()) -> Run:
     """What a session has done so far.
 

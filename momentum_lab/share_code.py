@@ -20,8 +20,8 @@ from momentum_lab.run_file import Run, run_from
 from momentum_lab.scenario import Scenario
 
 VERSION = 1
-MOST_LETTERS = 8000
-"""Longer addresses are cut off by some programs."""
+MOST_LETTERS = 6000
+"""Servers and browsers take addresses of about 8000 letters."""
 
 # A code that unpacks to more than this, in bytes, is no run.
 _LARGEST = 500_000
@@ -75,7 +75,7 @@ def from_code(text: str) -> Run:
 
 def link(url: str, code: str) -> str:
     """The address that opens a code in the app that is served at `url`."""
-    return f"{url}/#run={code}"
+    return f"{url}/?run={code}"
 
 
 def _damaged(code: str) -> InputError:

@@ -130,6 +130,8 @@ class ControlPanel:
         """Show what is the case."""
         self._scenario_name = truth.scenario
         self._robot.follow(truth.robot)
+        if truth.scenario not in self._scenario.handle.options:
+            self._scenario.handle.options = (*self._scenario.handle.options, truth.scenario)
         self._scenario.follow(truth.scenario)
         self._controller.follow(truth.controller)
         self._planner.follow(truth.planner)

@@ -8,11 +8,21 @@ from collections.abc import Collection
 import msgspec
 
 from momentum_lab.errors import InputError
-from momentum_lab.events import ApplyPush, Event, LoadScenario, LookBack, SelectRobot, SetSpeed, StepOnce
+from momentum_lab.events import (
+    ApplyPush,
+    ApplyPushes,
+    Event,
+    LoadScenario,
+    LookBack,
+    SelectRobot,
+    SetSpeed,
+    StepOnce,
+)
 from momentum_lab.physics.push import Push
 
 SLOWEST = 1.0 / 8.0
 MOST_TICKS = 1000
+MOST_PUSHES = 50
 MOST_SECONDS = 3600.0
 _MOST_LETTERS = 200
 
@@ -44,6 +54,10 @@ def checked_event(event: Event, robots: Collection[str], scenarios: Collection[s
             raise InputError("scenario", name, f"one of {', '.join(scenarios)}")
         case ApplyPush(push):
             return ApplyPush(_checked_push(push))
+        case ApplyPushes(pushes):
+            if not 1 <= len(pushes) <= MOST_PUSHES:
+                raise InputError("sequence", f"{len(pushes)} pushes", f"1 to {MOST_PUSHES}")
+            return ApplyPushes(tuple(_checked_push(push) for push in pushes))
     return event
 
 

@@ -20,7 +20,7 @@ _REPEATED = 0.12
 
 _HELP = """
 **P** push &nbsp;·&nbsp; **K** play or pause &nbsp;·&nbsp; **J** step 1 ms &nbsp;·&nbsp; **L** step 20 ms
-&nbsp;·&nbsp; **R** stand up again &nbsp;·&nbsp; **1 2 3** tabs &nbsp;·&nbsp; **H** this help
+&nbsp;·&nbsp; **R** stand up again &nbsp;·&nbsp; **1 2 3 4** tabs &nbsp;·&nbsp; **H** this help
 
 *Look back* shows what was; **B** goes on from the instant you look at, with other gains if you like.
 
@@ -49,6 +49,7 @@ def add_keys(client: viser.ClientHandle, post: Post, push: PushPanel, status: St
         ("Push tab", "1", lambda: tabs.open(0)),
         ("Control tab", "2", lambda: tabs.open(1)),
         ("View tab", "3", lambda: tabs.open(2)),
+        ("Share tab", "4", lambda: tabs.open(3)),
         ("Help", "H", lambda: _show_help(client)),
     )
     for label, hotkey, act in keys:

@@ -6,12 +6,13 @@ from collections.abc import Callable
 
 import viser
 
-from momentum_lab.app import html
+from momentum_lab.app import html, share_html
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
+from momentum_lab.app.share_panel import SharePanel, Sharing
 from momentum_lab.app.status_bar import StatusBar
 from momentum_lab.app.tabs import Tabs
 from momentum_lab.app.view_panel import ViewPanel, ViewSettings
@@ -34,6 +35,7 @@ class Panels:
         redraw: asks for a new picture.
         choices: robots and scenarios to choose from.
         truth: what is the case at the start.
+        sharing: what the share tab can ask for.
     """
 
     def __init__(
@@ -45,6 +47,7 @@ class Panels:
         redraw: Callable[[], None],
         choices: Choices,
         truth: Truth,
+        sharing: Sharing,
     ) -> None:
         gui = client.gui
         gui.configure_theme(show_share_button=False, show_logo=False, brand_color=(0, 114, 178))
@@ -54,6 +57,9 @@ class Panels:
         roomy = client.camera.image_width >= _ROOMY * client.camera.image_height
         self.settings = ViewSettings(labelled=ALL_LABELS if roomy else FEW_LABELS)
         self.status = StatusBar(gui, post)
+        gui.add_html(share_html.HIDDEN_NEXT)
+        address = gui.add_text("address", "")
+        gui.add_html(share_html.READ_ADDRESS)
         group = gui.add_tab_group()
         with group.add_tab("Push", viser.Icon.HAND_MOVE):
             self.push = PushPanel(gui, post, tell, redraw)
@@ -61,6 +67,8 @@ class Panels:
             self.control = ControlPanel(gui, post, choices, truth)
         with group.add_tab("View", viser.Icon.EYE):
             ViewPanel(gui, self.settings, look, redraw)
+        with group.add_tab("Share", viser.Icon.SHARE):
+            self.share = SharePanel(gui, sharing, address)
         plots = gui.add_panel()
         with plots.add_tab("Plots", viser.Icon.CHART_LINE):
             gui.add_html(

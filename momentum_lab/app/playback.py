@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from momentum_lab.app.wire import Fallen, Truth
+from momentum_lab.app.opened import NOTHING_OPENED, OpenedRun
+from momentum_lab.app.wire import Fallen, OpenRun, RunTaken, Truth
 from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.motion import AngularGoal
 from momentum_lab.control.planner import OWN
@@ -12,6 +13,7 @@ from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.events import (
     ApplyPush,
+    ApplyPushes,
     Branch,
     Event,
     LoadScenario,
@@ -26,6 +28,7 @@ from momentum_lab.events import (
     SetAngularGoal,
     SetDirections,
     SetGain,
+    SetGains,
     SetMotion,
     SetPriority,
     SetSpeed,
@@ -35,6 +38,7 @@ from momentum_lab.momentum.directions import directions, text_of
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
 from momentum_lab.robot.catalog import load_spec
+from momentum_lab.run_file import Run, as_run, run_of
 from momentum_lab.scenario import Scenario, changed, load_scenario
 from momentum_lab.session import Session
 from momentum_lab.timeline import Timeline
@@ -82,17 +86,19 @@ class Playback:
     """One session, and whether its time runs.
 
     Args:
-        scenario: what to start with; it can be started again by its name.
+        first: what to start with; it can be started again by its scenario's name.
     """
 
-    def __init__(self, scenario: Scenario) -> None:
-        self._first = scenario
+    session: Session
+
+    def __init__(self, first: Scenario | Run) -> None:
+        self._first = as_run(first)
         self.run = 0
         self.speed = 1.0
         self.playing = True
         self.stopped: str | None = None
         self._waiting: list[SessionEvent] = []
-        self._begin(scenario)
+        self._begin(self._first)
 
     @property
     def latest(self) -> Sample:
@@ -108,7 +114,7 @@ class Playback:
         """Use a moment in which nothing has to be done."""
         self.session.recording.reserve(_IN_PASSING)
 
-    def take(self, event: Event) -> None:
+    def take(self, event: Event | OpenRun) -> None:
         """Do what an event asks for.
 
         Raises:
@@ -132,23 +138,28 @@ class Playback:
             case SetSpeed(value):
                 self.speed = value
             case SelectRobot(name):
-                self._begin(self._with_robot(name))
+                self._begin(Run(self._with_robot(name)))
             case LoadScenario(name):
                 self._begin(self._scenario(name))
+            case OpenRun(run):
+                self._begin(run)
+                self._first = run
             case _:
                 self._pass_on(event)
 
     def tick(self, count: int) -> None:
         """Some ticks, fewer if the simulation cannot go on."""
         for _ in range(count):
-            if self.stopped is not None:
-                return
+            if self.stopped is not None or self._opened.ends(self.session):
+                self.playing = False
+                break
             self._timeline.note()
+            self.run += self._opened.cue(self.session)
             try:
                 self.session.tick()
             except SimulationError as error:
                 self.stopped, self.playing = str(error), False
-        self._waiting.clear()
+            self._waiting.clear()
 
     def truth(self, real_time_factor: float) -> Truth:
         """What is the case now; what waits for the next tick counts as done."""
@@ -173,6 +184,23 @@ class Playback:
             stopped=self.stopped,
             push=_latest(session.pushes, self.shown.number("time")),
             behind=self._behind * session.scenario.timestep,
+            opened=self._opened.told(session),
+        )
+
+    def taken(self, recording: bool) -> RunTaken:
+        """The run as it is now, with its samples or without."""
+        session, fall = self.session, self.session.fall
+        return RunTaken(
+            run=run_of(session, self._waiting),
+            rows=session.recording.rows().tobytes() if recording else b"",
+            time=session.time,
+            controller=session.controller,
+            planner=session.planner,
+            priority=session.priority,
+            gains=_values(session.gains),
+            pushes=session.pushes,
+            fall=None if fall is None else Fallen(fall.time, fall.reason),
+            failures=session.solver_failures,
         )
 
     def _chosen(self) -> Chosen:
@@ -195,6 +223,8 @@ class Playback:
                     angular_goal = goal
                 case SetGain(name, value):
                     gains[name] = value
+                case SetGains(values):
+                    gains.update(values)
                 case SelectController(name):
                     controller, gains = name, _values(controller_entry(name).gains)
                     planner = planner if planner in controller_entry(name).planners else OWN
@@ -234,21 +264,25 @@ class Playback:
     def _pass_on(self, event: SessionEvent) -> None:
         self.session.post(event)
         self._waiting.append(event)
-        if isinstance(event, ApplyPush):
+        if isinstance(event, ApplyPush | ApplyPushes):
             self._behind = 0  # it acts now, and has to be seen
         if isinstance(event, Reset):
             self._behind = 0
             self.playing = self.playing or self.stopped is not None
             self.stopped = None
+            self._opened = NOTHING_OPENED  # its ticks are counted from another start
             self.run += 1
             self.tick(1)
 
-    def _begin(self, scenario: Scenario) -> None:
+    def _begin(self, run: Run) -> None:
         """A new session, standing; the old one goes on if this one cannot be made."""
+        scenario = run.scenario
         old = getattr(self, "session", None)
         robot = old.robot if old is not None and old.scenario.robot == scenario.robot else None
         session = Session(scenario, robot, capacity=round(MEMORY / scenario.timestep))
+        session.check(entry.event for entry in run.events)
         session.recording.reserve(_AT_ONCE)
+        self._opened = OpenedRun(run)
         self.session, self._timeline = session, Timeline(session)
         self._behind = 0
         self._waiting.clear()
@@ -274,10 +308,14 @@ class Playback:
             gains=gains,
         )
 
-    def _scenario(self, name: str) -> Scenario:
-        """The scenario of that name with the robot that is there."""
-        scenario = self._first if name == self._first.name else load_scenario(name)
-        return changed(scenario, robot=self.session.scenario.robot)
+    def _scenario(self, name: str) -> Run:
+        """The scenario of that name with the robot that is there; what was opened under it is played again."""
+        robot = self.session.scenario.robot
+        if name != self._first.scenario.name:
+            return Run(changed(load_scenario(name), robot=robot))
+        if robot == self._first.scenario.robot:
+            return self._first
+        return Run(changed(self._first.scenario, robot=robot))
 
 
 def _values(gains: object) -> dict[str, float]:

@@ -9,15 +9,15 @@ PAIRS = (("linear_damping", "linear_stiffness"), ("com_damping", "com_stiffness"
 
 
 def damping_ratio(damping: float, stiffness: float) -> float:
-    """zeta = d / (2 sqrt(k)): below 1 the CoM overshoots, above 1 it creeps back; infinite without stiffness."""
+    """Zeta = d / (2 sqrt(k)): below 1 the CoM overshoots, above 1 it creeps back; infinite without stiffness."""
     return damping / (2.0 * math.sqrt(stiffness)) if stiffness > 0.0 else math.inf
 
 
 def natural_frequency(stiffness: float) -> float:
-    """omega = sqrt(k), rad/s."""
+    """Omega = sqrt(k), rad/s."""
     return math.sqrt(stiffness)
 
 
 def gains_for(ratio: float, frequency: float) -> tuple[float, float]:
-    """d = 2 zeta omega (1/s) and k = omega^2 (1/s^2)."""
+    """D = 2 zeta omega (1/s) and k = omega^2 (1/s^2)."""
     return 2.0 * ratio * frequency, frequency * frequency

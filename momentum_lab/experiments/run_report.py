@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
@@ -200,7 +200,7 @@ def _section(title: str, content: str) -> str:
     return f"<h2>{escape(title)}</h2>{content}"
 
 
-def _table(rows: list[tuple[str, ...]], headed: bool = False, marked: Iterable[int] = ()) -> str:
+def _table(rows: Sequence[tuple[str, ...]], headed: bool = False, marked: Iterable[int] = ()) -> str:
     marked = set(marked)
     lines = []
     for number, row in enumerate(rows):

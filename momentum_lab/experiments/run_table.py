@@ -1,4 +1,4 @@
-"""A run as a table: every number of every sample, one column each, with a name that says what it is."""
+"""A run as a table: every number of every sample, one column each, named after it."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ import itertools
 import numpy as np
 
 from momentum_lab.finished import FinishedRun
+
+MOST_ROWS = 10_000
+"""More than a spreadsheet likes."""
 
 _XYZ = ("x", "y", "z")
 _SIX = ("fx", "fy", "fz", "mx", "my", "mz")
@@ -27,12 +30,17 @@ _PARTS: dict[str, tuple[str, ...]] = {
 }
 
 
-def table(run: FinishedRun) -> bytes:
-    """The run as a CSV file, SI units, world axes, one row per tick."""
+def table(run: FinishedRun, most: int = MOST_ROWS) -> bytes:
+    """The run as a CSV file, SI units, world axes.
+
+    Args:
+        run: the run.
+        most: how many rows at most: of a longer run every second tick is written, or every third, and so on.
+    """
     file = io.StringIO(newline="")
     writer = csv.writer(file)
     writer.writerow(header(run))
-    rows = run.recording.rows()
+    rows = run.recording.rows(max(1, -(-len(run.recording) // most)))
     np.savetxt(file, rows, fmt="%.9g", delimiter=",", newline="\r\n")
     return file.getvalue().encode()
 

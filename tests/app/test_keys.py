@@ -40,15 +40,25 @@ def desk() -> Desk:
 
 
 def test_what_each_key_does(desk):
-    for key in "PKJLR123":
+    for key in "PKJLR1234":
         desk.press(key)
-    assert desk.done == ["push", "toggle", StepOnce(1), StepOnce(20), Reset(), "tab 0", "tab 1", "tab 2"]
+    assert desk.done == [
+        "push",
+        "toggle",
+        StepOnce(1),
+        StepOnce(20),
+        Reset(),
+        "tab 0",
+        "tab 1",
+        "tab 2",
+        "tab 3",
+    ]
 
 
 def test_no_key_is_used_twice_and_none_that_widgets_need(desk):
     hotkeys = [hotkey for hotkey, _ in desk.commands.values() if hotkey]
     assert len(set(hotkeys)) == len(hotkeys)
-    assert set(hotkeys) == set("PKJLRB123H")
+    assert set(hotkeys) == set("PKJLRB1234H")
 
 
 def test_a_key_that_is_held_down_acts_once(desk, monkeypatch):

@@ -55,7 +55,7 @@ def test_own_presets_are_kept_and_found_again(own_folder):
 
 @pytest.mark.parametrize("name", ["soft", "", "../up", "Big", "a" * 41, "a b", "ä"])
 def test_names_that_are_refused(name, own_folder):
-    with pytest.raises(InputError, match="^preset: got .*; allowed: 1 to 40 small letters"):
+    with pytest.raises(InputError, match=r"^preset: got .*; allowed: 1 to 40 small letters"):
         save_preset(name, "computed-torque", {})
     assert not own_folder.exists()
 
@@ -97,7 +97,7 @@ def test_foreign_files_are_left_out_and_named_when_asked_for(own_folder):
 
 
 def test_unknown_preset_lists_the_known_ones():
-    with pytest.raises(InputError, match="^preset: got nope; allowed: one of soft, chapter-like, stiff"):
+    with pytest.raises(InputError, match=r"^preset: got nope; allowed: one of soft, chapter-like, stiff"):
         preset_named("nope", "computed-torque")
 
 
