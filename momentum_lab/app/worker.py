@@ -131,6 +131,8 @@ class Worker:
     def _advance(self, due: int) -> None:
         playback = self._playback
         for _ in range(due):
+            if not playback.playing:
+                break  # an opened run has come to its end
             self._pacer.begin(self._clock())
             run = playback.run
             playback.tick(1)

@@ -41,9 +41,9 @@ def code_of(lab: LabPage) -> str:
 
 
 def type_code(lab: LabPage, text: str) -> None:
-    """Into the field below the button; it has its label's id."""
-    uuid = lab.page.locator("label:text-is('code')").last.get_attribute("for", timeout=PATIENCE)
-    lab.page.locator(f"[id='{uuid}']").fill(text)
+    """Into the field that has no text yet; its label does not know it."""
+    label = lab.page.locator("label:text-is('code')").last
+    label.locator("xpath=ancestor::div[contains(@class, 'Flex')][1]//input").fill(text)
 
 
 def choose_file(lab: LabPage, what: str) -> None:
