@@ -12,6 +12,7 @@ from momentum_lab.app.keys import add_keys
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
+from momentum_lab.app.sequence_panel import SequencePanel
 from momentum_lab.app.share_panel import SharePanel, Sharing
 from momentum_lab.app.status_bar import StatusBar
 from momentum_lab.app.tabs import Tabs
@@ -63,8 +64,9 @@ class Panels:
         group = gui.add_tab_group()
         with group.add_tab("Push", viser.Icon.HAND_MOVE):
             self.push = PushPanel(gui, post, tell, redraw)
+            SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
         with group.add_tab("Control", viser.Icon.ADJUSTMENTS):
-            self.control = ControlPanel(gui, post, choices, truth)
+            self.control = ControlPanel(gui, post, tell, choices, truth)
         with group.add_tab("View", viser.Icon.EYE):
             ViewPanel(gui, self.settings, look, redraw)
         with group.add_tab("Share", viser.Icon.SHARE):

@@ -112,7 +112,9 @@ def test_an_address_opens_the_run(served: Served, open_page: Opener) -> None:
     second.save(OUTPUT / "opened.png")
 
 
-def test_what_is_no_run_is_told_and_nothing_is_lost(served: Served, open_page: Opener, tmp_path: Path) -> None:
+def test_what_is_no_run_is_told_and_nothing_is_lost(
+    served: Served, open_page: Opener, tmp_path: Path
+) -> None:
     lab = open_page(served.url).until_furnished()
     lab.press("k")
     lab.expect_text("paused")
