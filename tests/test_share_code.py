@@ -71,13 +71,13 @@ def test_every_single_changed_letter_is_found():
 @pytest.mark.parametrize("bad", [3.0, math.nan])
 def test_a_code_with_a_value_out_of_range_is_refused(bad):
     scenario = msgspec.structs.replace(STAND.scenario, priority=bad)
-    with pytest.raises(InputError, match="^priority in the code: got "):
+    with pytest.raises(InputError, match=r"^priority in the code: got "):
         from_code(to_code(Run(scenario)))
 
 
 def test_a_run_too_long_for_a_code_says_what_to_do():
     events = tuple(LoggedEvent(i, SetGain("linear_damping", math.sin(i) + 2.0)) for i in range(1500))
     with pytest.raises(
-        InputError, match="^code: got a run of 1500 events, .*; save it as a run file instead"
+        InputError, match=r"^code: got a run of 1500 events, .*; save it as a run file instead"
     ):
         to_code(Run(STAND.scenario, events, ticks=1500))

@@ -270,10 +270,6 @@ def _push_arguments(parser: _Parser) -> None:
 
 
 def _choice_arguments(parser: _Parser) -> None:
-    parser.add_argument("--code", metavar="CODE", help="a shared run instead of a scenario")
-    parser.add_argument(
-        "--preset", metavar="NAME", help="gains by name: soft, chapter-like, stiff, or your own"
-    )
     parser.add_argument("--robot", metavar="R", help="a name, or a robot's .toml file")
     parser.add_argument("--controller", metavar="C", help="who keeps the balance")
     parser.add_argument(
@@ -286,6 +282,10 @@ def _choice_arguments(parser: _Parser) -> None:
     parser.add_argument("--motion", metavar="M", help="what the robot does meanwhile: kick, arm-swing")
     parser.add_argument(
         "--angular-goal", metavar="G", help="angular momentum asked for: zero, or reference, the motion's own"
+    )
+    parser.add_argument("--code", metavar="CODE", help="a shared run instead of a scenario")
+    parser.add_argument(
+        "--preset", metavar="NAME", help="gains by name: soft, chapter-like, stiff, or your own"
     )
 
 

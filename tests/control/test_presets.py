@@ -29,9 +29,9 @@ def own_folder(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", SHIPPED)
 @pytest.mark.parametrize("controller", CONTROLLERS)
 def test_it_stands_the_chapters_push(controller, name, robot):
-    """And the CoM is nearly at rest 1.3 s later, without a solve that failed."""
+    """And the CoM is nearly at rest a second later, without a solve that failed."""
     gains = preset_named(name, controller).gains
-    session = play(robot, forward_push(robot, seconds=1.6, controller=controller, gains=gains))
+    session = play(robot, forward_push(robot, seconds=1.3, controller=controller, gains=gains))
     assert session.fall is None
     assert np.linalg.norm(session.recording.latest["com_velocity"]) < 0.05
     assert session.solver_failures == 0
