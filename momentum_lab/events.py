@@ -10,6 +10,7 @@ from typing import Literal
 
 import msgspec
 
+from momentum_lab.physics.plate import PlateMotion
 from momentum_lab.physics.push import Push
 
 
@@ -54,6 +55,30 @@ class SetAngularGoal(msgspec.Struct, frozen=True, tag=True):
     """Ask for no angular momentum, or for that of the motion by kinematics alone."""
 
     goal: Literal["zero", "reference"]
+
+
+class SetFriction(msgspec.Struct, frozen=True, tag=True):
+    """Make the ground under a foot more or less slippery from now on; an empty name means all feet."""
+
+    value: float
+    foot: str = ""
+
+
+class MoveGround(msgspec.Struct, frozen=True, tag=True):
+    """Let the plate under a foot begin a motion now; an empty name means all feet, as if on one plate."""
+
+    motion: PlateMotion
+    foot: str = ""
+
+
+class StopGround(msgspec.Struct, frozen=True, tag=True):
+    """Let all swaying plates come to rest within a period of theirs."""
+
+
+class SetGroundSense(msgspec.Struct, frozen=True, tag=True):
+    """Tell the robot how the ground moves, or let it feel it through its soles."""
+
+    sense: Literal["told", "felt"]
 
 
 class SelectController(msgspec.Struct, frozen=True, tag=True):
@@ -131,6 +156,10 @@ SessionEvent = (
     | SelectPlanner
     | SetMotion
     | SetAngularGoal
+    | SetFriction
+    | MoveGround
+    | StopGround
+    | SetGroundSense
     | SelectController
     | ApplyPush
     | ApplyPushes

@@ -8,6 +8,7 @@ import numpy as np
 
 from momentum_lab.compiled import compiled
 from momentum_lab.control.controller import SLACKS, ControlOutput
+from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.momentum.ground import GRAVITY, cmp_coordinates, cop_coordinates, sole_cop
 from momentum_lab.momentum.pendulum import capture_coordinates
 from momentum_lab.momentum.wrench import sum_wrenches
@@ -31,7 +32,7 @@ class Tick:
         dynamics: the state at its start with everything computed.
         output: what the controller answered.
         step: what the world answered.
-        ground_height: height of the plane that CoP, CMP and capture point lie on, m.
+        ground: the plates under the feet at its start; net CoP, CMP and capture point lie at their mean height.
         priority: from 0 to 1.
         fallen: whether the robot has fallen.
     """
@@ -42,7 +43,7 @@ class Tick:
     dynamics: Dynamics
     output: ControlOutput
     step: Step
-    ground_height: float
+    ground: FootGround
     priority: float
     fallen: bool
 
@@ -65,6 +66,8 @@ def observe(row: np.ndarray, tick: Tick) -> None:
         dynamics.centroidal_bias,
         dynamics.sole_position,
         dynamics.sole_rotation,
+        tick.ground.position,
+        tick.ground.rotation,
         output.momentum_rate_desired,
         output.momentum_rate_admissible,
         output.foot_wrench_admissible,
@@ -83,7 +86,7 @@ def observe(row: np.ndarray, tick: Tick) -> None:
         tick.robot.effort_limit,
         tick.time,
         tick.timestep,
-        tick.ground_height,
+        tick.ground.height,
         tick.robot.mass * GRAVITY,
         tick.priority,
         output.failure is not None,
@@ -109,7 +112,7 @@ def torque_ratio(torque: np.ndarray, limit: np.ndarray) -> float:
 
 @compiled("f8[:, ::1](f8[:, ::1], f8[:, :, ::1])")
 def sole_poses(position: np.ndarray, rotation: np.ndarray) -> np.ndarray:
-    """Positions (F, 3) and quaternions xyzw of axes (F, 3, 3) as one array (F, 7)."""
+    """Positions (F, 3) and quaternions xyzw of axes (F, 3, 3), of soles or plates, as one array (F, 7)."""
     poses = np.empty((len(position), 7))
     for foot in range(len(position)):
         poses[foot, :3] = position[foot]
@@ -163,7 +166,8 @@ def put(row: np.ndarray, start: int, numbers: np.ndarray) -> int:
 @compiled(
     # the row, then what comes from the dynamics, the output, the step, and the tick itself
     f"void({_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_MATRIX}, "
-    f"f8[:, :, ::1], {_VECTOR}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, "
+    f"f8[:, :, ::1], {_MATRIX}, f8[:, :, ::1], {_VECTOR}, {_VECTOR}, {_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}, "
+    f"{_VECTOR}, {_VECTOR}, "
     f"{_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}, f8, {_VECTOR}, {_VECTOR}, {_VECTOR}, "
     f"f8, f8, f8, f8, f8, b1, b1)"
 )
@@ -178,6 +182,8 @@ def fill(
     centroidal_bias: np.ndarray,
     sole_position: np.ndarray,
     sole_rotation: np.ndarray,
+    plate_position: np.ndarray,
+    plate_rotation: np.ndarray,
     rate_desired: np.ndarray,
     rate_admissible: np.ndarray,
     wrench_admissible: np.ndarray,
@@ -224,6 +230,7 @@ def fill(
     end = put(row, end, foot_wrench.ravel())
     end = put(row, end, wrench_admissible.ravel())
     end = put(row, end, sole_poses(sole_position, sole_rotation).ravel())
+    end = put(row, end, sole_poses(plate_position, plate_rotation).ravel())
     end = put(row, end, np.array(cop_coordinates(contact, world, ground_height)))
     end = put(row, end, cop_admissible)
     end = put(row, end, cop_desired)

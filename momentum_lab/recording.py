@@ -37,7 +37,8 @@ class Layout:
         """The layout for a robot: F feet, linear before angular, world axes, SI.
 
         Wrenches of feet are about the sole frame's origin, ground on robot; the push and all other contacts
-        about the world origin; momentum and its rates about the CoM. Slacks are those of `SLACKS`,
+        about the world origin; momentum and its rates about the CoM; the pose of the plate under each foot is
+        that of its middle. Slacks are those of `SLACKS`,
         0 where a law has none; the torque ratio is the largest torque that a controller asks for, as a part of
         its motor's limit.
         """
@@ -57,6 +58,7 @@ class Layout:
             "foot_wrench_measured": (feet, 6),
             "foot_wrench_admissible": (feet, 6),
             "sole_pose": (feet, 7),
+            "ground_pose": (feet, 7),
             "cop_measured": (2,),
             "cop_admissible": (2,),
             "cop_desired": (2,),

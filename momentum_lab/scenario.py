@@ -9,10 +9,12 @@ from typing import Annotated, Any, Literal, get_args
 
 import msgspec
 
+from momentum_lab.control.ground_sense import GROUND_SENSES, GroundSense
 from momentum_lab.control.motion import ANGULAR_GOALS, AngularGoal
 from momentum_lab.errors import InputError, ScenarioError
 from momentum_lab.momentum.directions import directions
 from momentum_lab.paths import ASSETS
+from momentum_lab.physics.plate import AXES, Course, Friction, FrictionChange, Plate, PlateMotion
 from momentum_lab.physics.push import Push, Shape
 
 SCENARIO_FOLDER = ASSETS / "scenarios"
@@ -24,7 +26,20 @@ MAX_LEAN = 0.1
 MAX_DROP = 2.0
 ENGINES = ("pinocchio",)
 
-_CHOICES = {"engine": ENGINES, "angular_goal": ANGULAR_GOALS}
+_CHOICES = {
+    "engine": ENGINES,
+    "angular_goal": ANGULAR_GOALS,
+    "ground_sense": GROUND_SENSES,
+    "shape": get_args(Shape),
+    "axis": AXES,
+    "course": get_args(Course),
+}
+_PARTS: dict[str, type[msgspec.Struct]] = {
+    "pushes": Push,
+    "ground": Plate,
+    "motions": PlateMotion,
+    "changes": FrictionChange,
+}
 _WORDS = {
     "float": "number",
     "int": "whole number",
@@ -58,6 +73,8 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         pushes: the pushes, in simulated time.
         seconds: how long a run lasts, s.
         friction: Coulomb coefficient of the ground; None: the robot's own.
+        ground: plates under the feet that are tilted, moving, higher or more slippery than the floor.
+        ground_sense: whether the robot is told how the ground moves, or feels it through its soles.
         position: where on the ground the robot starts (x, y), m.
         heading_deg: where it faces, degrees about the vertical.
         engine: which physics answers.
@@ -80,7 +97,9 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     gains: dict[str, float] = {}
     pushes: tuple[Push, ...] = ()
     seconds: Annotated[float, msgspec.Meta(ge=MIN_SECONDS, le=MAX_SECONDS)] = 4.0
-    friction: Annotated[float, msgspec.Meta(gt=0.0, le=2.0)] | None = None
+    friction: Friction | None = None
+    ground: tuple[Plate, ...] = ()
+    ground_sense: GroundSense = "told"
     position: tuple[Coordinate, Coordinate] = (0.0, 0.0)
     heading_deg: Annotated[float, msgspec.Meta(ge=-360.0, le=360.0)] = 0.0
     engine: Literal["pinocchio"] = "pinocchio"
@@ -160,12 +179,13 @@ def _explained(rule: str, field: str, data: Any) -> tuple[object, str]:
     for key in re.findall(r"\w+", field):
         given = given[int(key)] if isinstance(given, list | tuple) else given[key]
     if "unknown field" in rule:
-        fields = (Push if field.startswith("pushes") else Scenario).__struct_fields__
+        inside = [word for word in re.findall(r"[a-z_]+", field) if word in _PARTS]
+        fields = (_PARTS[inside[-1]] if inside else Scenario).__struct_fields__
         return rule.split("`")[1], f"the fields {', '.join(fields)}"
     if "missing required field" in rule:
         return "nothing", rule.removeprefix("Object missing required ").replace("`", "")
     if "enum value" in rule:
-        return given, f"one of {', '.join(_CHOICES.get(field, get_args(Shape)))}"
+        return given, f"one of {', '.join(_CHOICES[field.rpartition('.')[2]])}"
     allowed = rule.removeprefix("Expected ").partition(", got")[0].replace("`", "")
     for plain, word in _WORDS.items():
         allowed = allowed.replace(plain, word)

@@ -15,6 +15,7 @@ import pinocchio as pin
 from momentum_lab.control.controller import Controller, ControlOutput
 from momentum_lab.control.fallback import limp
 from momentum_lab.control.gains import with_gains
+from momentum_lab.control.ground_sense import GroundSense, ground_sense, sensed
 from momentum_lab.control.handover import Handover
 from momentum_lab.control.motion import AngularGoal, MovingGoal, reach_of
 from momentum_lab.control.planner import OWN
@@ -25,20 +26,25 @@ from momentum_lab.events import (
     ApplyPush,
     ApplyPushes,
     LoggedEvent,
+    MoveGround,
     Reset,
     SelectController,
     SelectPlanner,
     SessionEvent,
     SetAngularGoal,
     SetDirections,
+    SetFriction,
     SetGain,
     SetGains,
+    SetGroundSense,
     SetMotion,
     SetPriority,
+    StopGround,
 )
 from momentum_lab.momentum.directions import Directions, directions
+from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.observe import Tick, observe
-from momentum_lab.physics.ground import Ground
+from momentum_lab.physics.ground import Ground, checked_friction
 from momentum_lab.physics.push import Push
 from momentum_lab.physics.simulator import Simulator, Step
 from momentum_lab.recording import Layout, Recording, Sample
@@ -46,6 +52,7 @@ from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.posture import standing_posture
 from momentum_lab.robot.state import Dynamics, State
 from momentum_lab.scenario import Scenario
+from momentum_lab.terrain import standing_places, start_of, terrain
 
 # A robot whose CoM is lower than this part of its standing height has fallen.
 _FALLEN_HEIGHT = 0.6
@@ -97,12 +104,14 @@ class Session:
     planner: str
     motion: str
     angular_goal: AngularGoal
+    ground_sense: GroundSense
     controller: str
     gains: Any
     fall: Fall | None
     solver_failures: int
     last_failure: str | None
     _scripted: tuple[Push, ...]
+    _ground: Ground
     _motion: MovingGoal | None
     _motion_start: float
     _controller: Controller
@@ -118,19 +127,19 @@ class Session:
         self.scenario = scenario
         self.robot = robot or RobotModel.named(scenario.robot)
         self.stance = stance_of(self.robot, scenario.stance)
+        self._ground = self._first_ground = terrain(scenario, self.robot)
         self._start = _lifted(
             _starting_state(self.robot, scenario, scenario.com_outside), scenario.drop_height
         )
         home = self.robot.at(_starting_state(self.robot, scenario, None))
-        self._standing_height = float(home.com_in_world[2])
+        self._standing_height = float(home.com_in_world[2]) - self._ground.at(0.0).height
         self._goal = StandingGoal(self.robot, home, self.stance)
         self._home, self._tick_of_run = home, 0
         self._move(scenario.motion, scenario.angular_goal, 0.0)
-        friction = self.robot.spec.friction if scenario.friction is None else scenario.friction
-        self._ground = Ground.level(len(self.robot.soles), friction)
         self._scripted = tuple(self._checked_push(push) for push in scenario.pushes)
         self.recording = Recording(Layout.of(self.robot), capacity or self.scenario_ticks)
         self.priority = scenario.priority
+        self.ground_sense = scenario.ground_sense
         self.controlled = directions(scenario.controlled)
         self.log: list[LoggedEvent] = []
         self.ticks = 0
@@ -154,6 +163,11 @@ class Session:
     def dynamics(self) -> Dynamics:
         """The present state with everything computed."""
         return self.robot.at(self.state)
+
+    @property
+    def ground(self) -> Ground:
+        """What the robot can touch, as it is and as it will move."""
+        return self._ground
 
     @property
     def motion_reach(self) -> np.ndarray:
@@ -195,10 +209,11 @@ class Session:
         """
         self._drain_inbox()
         dynamics = self.robot.at(self.state)
-        output = self._control(dynamics)
+        plates = self._ground.at(self.time)
+        output = self._control(dynamics, plates)
         step = self._simulator.step(dynamics, output.torque, self.pushes, self.time)
-        self.fall = self.fall or self._fall(dynamics, step)
-        sample = self._record(dynamics, output, step)
+        self.fall = self.fall or self._fall(dynamics, step, plates)
+        sample = self._record(dynamics, output, step, plates)
         self._advance(output, step)
         return sample
 
@@ -222,11 +237,12 @@ class Session:
             self.log.append(LoggedEvent(self.ticks, event))
             self._apply(event)
 
-    def _control(self, dynamics: Dynamics) -> ControlOutput:
+    def _control(self, dynamics: Dynamics, plates: FootGround) -> ControlOutput:
         """The controller's answer; a robot that has fallen goes limp."""
         if self.fall is not None:
             return limp(self.robot, dynamics, self._memory)
-        reference = self._goal.reference(dynamics, self.controlled, self.planner)
+        known = sensed(self.ground_sense, dynamics, plates)
+        reference = self._goal.reference(dynamics, known, self.controlled, self.planner)
         if self._motion is not None:
             reference = self._motion.applied(reference, self.time - self._motion_start)
         output = self._controller.compute(dynamics, reference, self.gains, self.priority, self._memory)
@@ -255,7 +271,7 @@ class Session:
         self._taken_over = False
         return torque if self._handover is None else self._handover.applied(torque)
 
-    def _record(self, dynamics: Dynamics, output: ControlOutput, step: Step) -> Sample:
+    def _record(self, dynamics: Dynamics, output: ControlOutput, step: Step, plates: FootGround) -> Sample:
         tick = Tick(
             self.robot,
             self.time,
@@ -263,7 +279,7 @@ class Session:
             dynamics,
             output,
             step,
-            self._ground.height,
+            plates,
             self.priority,
             self.fall is not None,
         )
@@ -279,12 +295,13 @@ class Session:
         if not step.state.is_finite():
             raise SimulationError(f"the state is not finite after {self.time:.3f} s; the recording is kept")
 
-    def _fall(self, dynamics: Dynamics, step: Step) -> Fall | None:
+    def _fall(self, dynamics: Dynamics, step: Step, plates: FootGround) -> Fall | None:
         """When and why the robot has fallen; None while it stands."""
         if any(step.other_wrench.tolist()):
             return Fall(self.time, "something other than a sole touched the ground")
-        if dynamics.com_in_world[2] < _FALLEN_HEIGHT * self._standing_height:
-            return Fall(self.time, f"the CoM sank to {dynamics.com_in_world[2]:.2f} m")
+        height = dynamics.com_in_world[2] - plates.height
+        if height < _FALLEN_HEIGHT * self._standing_height:
+            return Fall(self.time, f"the CoM sank to {height:.2f} m")
         return None
 
     def _check(self, event: SessionEvent) -> None:
@@ -302,6 +319,13 @@ class Session:
                 check_planner(name, self._controller_to_be())
             case SetMotion(name) if name:
                 reach_of(self.robot, name)
+            case SetFriction(value, foot):
+                self._feet_named(foot)
+                checked_friction(value)
+            case MoveGround(motion, foot):
+                self._ground.moving_too(self._feet_named(foot), motion)
+            case SetGroundSense(sense):
+                ground_sense(sense)
             case SelectController(name):
                 controller_entry(name)
             case ApplyPush(push):
@@ -337,6 +361,16 @@ class Session:
                 self._move(name, self.angular_goal, self.time)
             case SetAngularGoal(goal):
                 self._move(self.motion, goal, self._motion_start)
+            case SetFriction(value, foot):
+                self._change(self._ground.as_slippery_as(value, self._feet_named(foot), self.time))
+            case MoveGround(motion, foot):
+                begun = msgspec.structs.replace(motion, start=self.time, stop=None)
+                self._change(self._ground.moving_too(self._feet_named(foot), begun))
+            case StopGround():
+                self._change(self._ground.coming_to_rest(self.time))
+            case SetGroundSense(sense):
+                self.ground_sense = ground_sense(sense)
+                self._taken_over = True
             case ApplyPush(push):
                 self._push(msgspec.structs.replace(push, start=0.0))
             case ApplyPushes(pushes):
@@ -350,6 +384,17 @@ class Session:
         """Let a push begin so long after now as its start says."""
         sized = self._checked_push(push)
         self.pushes = (*self.pushes, msgspec.structs.replace(sized, start=self.time + sized.start))
+
+    def _feet_named(self, name: str) -> tuple[int, ...]:
+        """The feet of that name; all for an empty one."""
+        if name and name not in self.robot.foot_names:
+            raise InputError("foot", name, f"one of {', '.join(self.robot.foot_names)}")
+        return tuple(i for i, foot in enumerate(self.robot.foot_names) if name in ("", foot))
+
+    def _change(self, ground: Ground) -> None:
+        """Stand on another ground from now on."""
+        self._ground = ground
+        self._simulator = Simulator(self.robot, ground, self.scenario.timestep)
 
     def _select(self, name: str) -> None:
         entry = controller_entry(name)
@@ -367,6 +412,7 @@ class Session:
         self.solver_failures = 0
         self.last_failure = None
         self._tick_of_run, self._motion_start = 0, 0.0
+        self._ground = self._first_ground
         self._simulator = Simulator(self.robot, self._ground, self.scenario.timestep)
         self._memory = self._controller.initial_memory(self.dynamics)
         self._torque = self._handover = None
@@ -402,11 +448,11 @@ def stance_of(robot: RobotModel, names: tuple[str, ...]) -> tuple[int, ...]:
 
 def _starting_state(robot: RobotModel, scenario: Scenario, com_outside: float | None) -> State:
     """The standing posture, or one that leans out, moved and turned to where the scenario starts."""
-    q = standing_posture(robot, scenario.stance or robot.foot_names, com_outside).copy()
-    turn = pin.utils.rotate("z", math.radians(scenario.heading_deg))
-    rotation = turn @ pin.Quaternion(q[3:7]).toRotationMatrix()
-    q[:3] = turn @ q[:3]
-    q[:2] += scenario.position
+    places = standing_places(scenario, robot) if scenario.ground else None
+    q = standing_posture(robot, scenario.stance or robot.foot_names, com_outside, places).copy()
+    start = start_of(scenario)
+    q[:3] = start.act(q[:3])
+    rotation = start.rotation @ pin.Quaternion(q[3:7]).toRotationMatrix()
     q[3:7] = pin.Quaternion(rotation).normalized().coeffs()
     return State(q, np.zeros(robot.nv))
 

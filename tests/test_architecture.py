@@ -31,6 +31,7 @@ FLOORS: tuple[frozenset[str], ...] = (
             "observe",
             "recording",
             "session",
+            "terrain",
             "timeline",
             "status",
             "headless",

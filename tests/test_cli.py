@@ -144,11 +144,11 @@ def test_bad_value_is_one_line_that_names_it(words: str, message: str, capsys: O
 @pytest.mark.parametrize(
     ("words", "start"),
     [
-        ("run", "scenario: got nothing; allowed: one of arm-swing, fig1, fig4, "),
-        ("run nope", "scenario: got nope; allowed: one of arm-swing, fig1, fig4, "),
+        ("run", "scenario: got nothing; allowed: one of arm-swing, board, boat, bus, "),
+        ("run nope", "scenario: got nope; allowed: one of arm-swing, board, boat, bus, "),
         (
             "app --scenario nope",
-            "--scenario: got nope; allowed: one of arm-swing, fig1, fig4, ",
+            "--scenario: got nope; allowed: one of arm-swing, board, boat, bus, ",
         ),
         ("app --robot nope", "--robot: got nope; allowed: one of g1, icub, "),
         ("equations --robot nope", "--robot: got nope; allowed: one of g1, icub, "),

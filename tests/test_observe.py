@@ -15,6 +15,7 @@ from momentum_lab.recording import Layout
 from momentum_lab.robot.state import State
 from momentum_lab.session import Session
 from tests.conftest import assert_close
+from tests.control.situations import LEVEL
 from tests.runs import PUSH_END, PUSH_START, forward_push, play, played
 
 G = 9.81
@@ -53,7 +54,7 @@ def test_a_row_of_another_width_is_refused(robot, missing):
     dynamics, feet = robot.at(state), len(robot.soles)
     nothing, six = np.zeros(robot.na), np.zeros(6)
     step = Step(state, nothing, nothing, np.zeros((feet, 6)), six, six, six, 0.0)
-    tick = Tick(robot, 0.0, 1e-3, dynamics, limp(robot, dynamics, None), step, 0.0, 0.0, False)
+    tick = Tick(robot, 0.0, 1e-3, dynamics, limp(robot, dynamics, None), step, LEVEL, 0.0, False)
     observe(np.empty(Layout.of(robot).width), tick)
     with pytest.raises(ValueError, match="do not fill a row"):
         observe(np.empty(Layout.of(robot).width - missing), tick)
@@ -166,7 +167,7 @@ def test_a_rate_that_does_not_explain_the_motion_has_a_residual(robot, session):
     step = Step(after, idle, idle, carried, np.zeros(6), np.zeros(6), rate, 0.0)
     layout = Layout.of(robot)
     row = np.zeros(layout.width)
-    observe(row, Tick(robot, 0.3, 1e-3, dynamics, limp(robot, dynamics, None), step, 0.0, 0.0, False))
+    observe(row, Tick(robot, 0.3, 1e-3, dynamics, limp(robot, dynamics, None), step, LEVEL, 0.0, False))
     assert row[layout.slices["equation_residual"]][0] == pytest.approx(0.01, rel=1e-6)
 
 
@@ -202,7 +203,7 @@ def test_slacks_and_torque_ratio_are_the_controllers(robot):
     column = session.recording.column
     for i in range(210, 600, 40):
         dynamics = robot.at(State(column("q")[i], column("v")[i]))
-        reference = session._goal.reference(dynamics)
+        reference = session._goal.reference(dynamics, LEVEL)
         out = controller.compute(dynamics, reference, entry.gains, 0.0, None)
         assert_close(column("slack")[i], np.array([out.slack.get(name, 0.0) for name in SLACKS]), 1e-6)
         assert column("torque_ratio")[i] == pytest.approx(np.abs(out.torque / robot.effort_limit).max())

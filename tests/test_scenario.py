@@ -140,7 +140,9 @@ def test_checked_refuses_nan_that_slipped_past_the_ranges() -> None:
 
 @pytest.mark.parametrize("name", ["nope", "", "../secret", "x" * 5000, "/nowhere/at/all.toml"])
 def test_unknown_name_lists_the_known_ones(name: str) -> None:
-    with pytest.raises(ScenarioError, match=r"^scenario: got .*; allowed: one of arm-swing, fig1, fig4, "):
+    with pytest.raises(
+        ScenarioError, match=r"^scenario: got .*; allowed: one of arm-swing, board, boat, bus, "
+    ):
         load_scenario(name)
 
 

@@ -78,7 +78,7 @@ def overlays(sample: Sample, picture: Picture) -> list[Mark]:
         sample: the sample.
         picture: what belongs to the picture besides it.
     """
-    ground = _ground_height(sample, picture.robot)
+    ground = float(sample["ground_pose"][:, 2].mean())
     polygon = polygon_of(sample, picture.robot)
     marks = [
         *_com(sample, ground),
@@ -88,13 +88,6 @@ def overlays(sample: Sample, picture: Picture) -> list[Mark]:
         *_push(sample, picture, ground),
     ]
     return [mark for mark in marks if all(math.isfinite(x) for point in mark.points for x in point)]
-
-
-def _ground_height(sample: Sample, robot: RobotModel) -> float:
-    """Height of the ground under the feet; the floor, when no foot is on it, m."""
-    if not carrying_feet(sample, robot.mass):
-        return 0.0
-    return float(sample["sole_pose"][:, 2].min())
 
 
 def _com(sample: Sample, ground: float) -> list[Mark]:

@@ -8,6 +8,7 @@ import viser
 
 from momentum_lab.app import html, share_html
 from momentum_lab.app.control_panel import Choices, ControlPanel
+from momentum_lab.app.ground_panel import GroundPanel
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
 from momentum_lab.app.plots import Plots
@@ -37,6 +38,7 @@ class Panels:
         choices: robots and scenarios to choose from.
         truth: what is the case at the start.
         sharing: what the share tab can ask for.
+        feet: names of the robot's feet.
     """
 
     def __init__(
@@ -49,6 +51,7 @@ class Panels:
         choices: Choices,
         truth: Truth,
         sharing: Sharing,
+        feet: tuple[str, ...],
     ) -> None:
         gui = client.gui
         gui.configure_theme(show_share_button=False, show_logo=False, brand_color=(0, 114, 178))
@@ -65,6 +68,7 @@ class Panels:
         with group.add_tab("Push", viser.Icon.HAND_MOVE):
             self.push = PushPanel(gui, post, tell, redraw)
             SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
+            self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control", viser.Icon.ADJUSTMENTS):
             self.control = ControlPanel(gui, post, tell, choices, truth)
         with group.add_tab("View", viser.Icon.EYE):

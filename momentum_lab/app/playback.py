@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from momentum_lab.app.opened import NOTHING_OPENED, OpenedRun
 from momentum_lab.app.wire import Fallen, OpenRun, RunTaken, Truth
 from momentum_lab.control.gains import declared_gains
+from momentum_lab.control.ground_sense import GroundSense
 from momentum_lab.control.motion import AngularGoal
 from momentum_lab.control.planner import OWN
 from momentum_lab.control.registry import controller_entry
@@ -18,6 +19,7 @@ from momentum_lab.events import (
     Event,
     LoadScenario,
     LookBack,
+    MoveGround,
     Pause,
     Play,
     Reset,
@@ -27,12 +29,15 @@ from momentum_lab.events import (
     SessionEvent,
     SetAngularGoal,
     SetDirections,
+    SetFriction,
     SetGain,
     SetGains,
+    SetGroundSense,
     SetMotion,
     SetPriority,
     SetSpeed,
     StepOnce,
+    StopGround,
 )
 from momentum_lab.momentum.directions import directions, text_of
 from momentum_lab.physics.push import Push
@@ -61,6 +66,7 @@ class Chosen:
     motion: str
     angular_goal: AngularGoal
     gains: dict[str, float]
+    ground_sense: GroundSense = "told"
 
     def until(self, other: Chosen) -> list[SessionEvent]:
         """The events that lead from these choices to others."""
@@ -77,6 +83,8 @@ class Chosen:
             events.append(SelectPlanner(other.planner))
         if other.motion != self.motion:
             events.append(SetMotion(other.motion))
+        if other.ground_sense != self.ground_sense:
+            events.append(SetGroundSense(other.ground_sense))
         if other.angular_goal != self.angular_goal:
             events.append(SetAngularGoal(other.angular_goal))
         return events + [SetGain(name, value) for name, value in other.gains.items() if value != gains[name]]
@@ -183,6 +191,10 @@ class Playback:
             failures=session.solver_failures,
             stopped=self.stopped,
             push=_latest(session.pushes, self.shown.number("time")),
+            friction=tuple(session.ground.friction(self.shown.number("time")).tolist()),
+            uneven=not session.ground.is_floor,
+            floor=float(session.ground.floor.origin[2]),
+            ground_sense=chosen.ground_sense,
             behind=self._behind * session.scenario.timestep,
             opened=self._opened.told(session),
         )
@@ -209,6 +221,7 @@ class Playback:
         priority, controlled = session.priority, text_of(session.controlled)
         motion, angular_goal = session.motion, session.angular_goal
         controller, planner, gains = session.controller, session.planner, _values(session.gains)
+        sense = session.ground_sense
         for event in self._waiting:
             match event:
                 case SetPriority(value):
@@ -221,6 +234,8 @@ class Playback:
                     motion = name
                 case SetAngularGoal(goal):
                     angular_goal = goal
+                case SetGroundSense(told_or_felt):
+                    sense = told_or_felt
                 case SetGain(name, value):
                     gains[name] = value
                 case SetGains(values):
@@ -228,7 +243,7 @@ class Playback:
                 case SelectController(name):
                     controller, gains = name, _values(controller_entry(name).gains)
                     planner = planner if planner in controller_entry(name).planners else OWN
-        return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains)
+        return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains, sense)
 
     def _fall(self) -> Fallen | None:
         """The fall, unless it is still to come at the instant that is looked at."""
@@ -264,7 +279,7 @@ class Playback:
     def _pass_on(self, event: SessionEvent) -> None:
         self.session.post(event)
         self._waiting.append(event)
-        if isinstance(event, ApplyPush | ApplyPushes):
+        if isinstance(event, ApplyPush | ApplyPushes | MoveGround | StopGround | SetFriction):
             self._behind = 0  # it acts now, and has to be seen
         if isinstance(event, Reset):
             self._behind = 0

@@ -15,13 +15,14 @@ from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
 from momentum_lab.app.overlays import Picture, overlays
 from momentum_lab.app.panels import Panels
+from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.profile import RenderProfile
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot, RobotShelf
 from momentum_lab.app.share_panel import Sharing
 from momentum_lab.app.snapshot import view_of
 from momentum_lab.app.wire import Frame, Truth, rows_of
-from momentum_lab.app.world import add_world
+from momentum_lab.app.world import add_floor, add_world
 from momentum_lab.errors import InputError
 from momentum_lab.events import Event
 from momentum_lab.recording import Sample
@@ -39,6 +40,7 @@ class Stage:
         loaded: the robot.
         body: its meshes in the scene.
         marks: its marks in the scene.
+        plates: the plates under its feet.
         camera: what looks at it.
     """
 
@@ -46,6 +48,7 @@ class Stage:
     loaded: LoadedRobot
     body: RobotScene
     marks: MarkScene
+    plates: PlateScene
     camera: Camera
 
 
@@ -77,6 +80,7 @@ class Visitor:
         self._stage: Stage | None = None
         self._panels: Panels | None = None
         self._run = -1
+        self._floor = 0.0
         self._left = False
         self.frames = 0
         self.latest: Frame | None = None
@@ -130,7 +134,7 @@ class Visitor:
         loaded = self._shelf.get(truth.robot)
         sample = Sample.of(loaded.layout, rows_of(frame.row, loaded.layout.width)[0])
         stage = self._set_stage(truth, loaded, sample)
-        panels = self._panels or self._furnish(truth)
+        panels = self._panels or self._furnish(truth, loaded.layout.foot_names)
         if truth.run != self._run:
             self._run = truth.run
             panels.plots.clear()
@@ -146,16 +150,18 @@ class Visitor:
         if self._stage is not None:
             self._stage.body.remove()
             self._stage.marks.remove()
+            self._stage.plates.remove()
         size = float(sample["com"][2])
         body = RobotScene(self._client, loaded, sample["q"])
         marks, camera = MarkScene(self._client, size), Camera(self._client, size)
-        self._stage = Stage(truth.robot, loaded, body, marks, camera)
+        plates = PlateScene(self._client, loaded.model)
+        self._stage = Stage(truth.robot, loaded, body, marks, plates, camera)
         self._look(START_VIEW)
         if self._panels is not None:
             self._receive(self._panels, self._stage)
         return self._stage
 
-    def _furnish(self, truth: Truth) -> Panels:
+    def _furnish(self, truth: Truth, feet: tuple[str, ...]) -> Panels:
         self._panels = Panels(
             self._client,
             self.post,
@@ -165,6 +171,7 @@ class Visitor:
             self._choices,
             truth,
             self._sharing(),
+            feet,
         )
         if self._stage is not None:
             self._receive(self._panels, self._stage)
@@ -183,6 +190,7 @@ class Visitor:
     def _receive(self, panels: Panels, stage: Stage) -> None:
         """Fit the panels to the robot on stage."""
         panels.push.set_robot(stage.loaded)
+        panels.ground.set_feet(stage.loaded.layout.foot_names)
         panels.plots.begin(stage.loaded.model, stage.loaded.layout)
         panels.settings.changed = True
 
@@ -194,6 +202,10 @@ class Visitor:
         picture = Picture(
             stage.loaded.model, truth.push, truth.gains.get("safe_border", 0.0), settings.arrow_scale
         )
+        if truth.floor != self._floor:
+            self._floor = truth.floor
+            add_floor(self._client, truth.floor)
+        stage.plates.draw(sample["ground_pose"], truth.friction, truth.uneven)
         stage.body.draw(sample["q"])
         stage.camera.follow(sample["com"][:2], LOOSE if truth.fall is None else TIGHT)
         stage.marks.draw(overlays(sample, picture), settings.shown, settings.labelled)
@@ -205,6 +217,7 @@ class Visitor:
         panels.status.follow(truth, status, sample.number("time"))
         panels.control.follow(truth)
         panels.share.follow(truth)
+        panels.ground.follow(truth)
         panels.control.see(sample)
         if truth.fall is None:
             panels.push.see(sample)

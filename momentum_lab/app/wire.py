@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 
 from momentum_lab import events
+from momentum_lab.control.ground_sense import GroundSense
 from momentum_lab.control.motion import AngularGoal
 from momentum_lab.physics.push import Push
 from momentum_lab.run_file import Run
@@ -74,6 +75,10 @@ class Truth(msgspec.Struct, frozen=True):
         failures: how many solves have failed since the robot stood up.
         stopped: why the simulation cannot go on; None while it can.
         push: the latest push that has begun; None before the first.
+        friction: Coulomb coefficient under each foot.
+        uneven: whether the ground under the feet is anything but the floor.
+        floor: height of the floor under everything else, m.
+        ground_sense: whether the robot is told how the ground moves.
         behind: how long before the present end of the run the sample is that is looked at, s.
         opened: the run that has been opened; None when it is no opened run that plays.
     """
@@ -96,6 +101,10 @@ class Truth(msgspec.Struct, frozen=True):
     failures: int
     stopped: str | None
     push: Push | None
+    friction: tuple[float, ...] = ()
+    uneven: bool = False
+    floor: float = 0.0
+    ground_sense: GroundSense = "told"
     behind: float = 0.0
     opened: Opened | None = None
 

@@ -8,12 +8,18 @@ from momentum_lab.app.profile import RenderProfile
 
 
 def add_world(client: viser.ClientHandle, profile: RenderProfile) -> None:
-    """Put ground and light into a browser tab's scene."""
+    """Put floor and light into a browser tab's scene."""
     client.scene.configure_default_lights(enabled=True, cast_shadow=profile.shadows)
     if not profile.environment:
         client.scene.configure_environment_map(None)
+    add_floor(client, 0.0)
+
+
+def add_floor(client: viser.ClientHandle, height: float) -> None:
+    """Put the floor at a height, m."""
     client.scene.add_grid(
         "/ground",
+        position=(0.0, 0.0, height),
         infinite_grid=True,
         fade_distance=14.0,
         fade_strength=1.5,

@@ -57,13 +57,13 @@ class StagedTick:
         start = perf_counter()
         dynamics = self.robot.at(self.state)
         computed = perf_counter()
-        reference = self._goal.reference(dynamics)
+        plates = self._ground.at(self.time)
+        reference = self._goal.reference(dynamics, plates)
         output = self._controller.compute(dynamics, reference, self._gains, 0.0, self._memory)
         decided = perf_counter()
         step = self._simulator.step(dynamics, output.torque, self.pushes, self.time)
         moved = perf_counter()
-        height = self._ground.height
-        tick = Tick(self.robot, self.time, self.timestep, dynamics, output, step, height, 0.0, False)
+        tick = Tick(self.robot, self.time, self.timestep, dynamics, output, step, plates, 0.0, False)
         observe(self._recording.next_row(), tick)
         recorded = perf_counter()
         self._memory, self.state = output.memory, step.state

@@ -8,6 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from momentum_lab.compiled import compiled
+from momentum_lab.momentum.foot_ground import acceleration_at, distance_above, velocity_at
+from momentum_lab.momentum.wrench import cross
 from momentum_lab.robot.rotation import rotation_error
 
 _MATRIX, _VECTOR = "f8[:, ::1]", "f8[::1]"
@@ -132,7 +134,8 @@ def momentum_and_pelvis(
 
 @compiled(
     f"Tuple(({_MATRIX}, {_VECTOR}))"
-    f"(i8[::1], f8[:, :, ::1], {_MATRIX}, {_MATRIX}, f8[:, :, ::1], {_VECTOR}, {_VECTOR}, f8)"
+    f"(i8[::1], f8[:, :, ::1], {_MATRIX}, {_MATRIX}, f8[:, :, ::1], "
+    f"{_MATRIX}, f8[:, :, ::1], {_MATRIX}, {_MATRIX}, {_VECTOR}, f8)"
 )
 def standing_feet(
     stance: np.ndarray,
@@ -140,14 +143,17 @@ def standing_feet(
     sole_bias: np.ndarray,
     sole_position: np.ndarray,
     sole_rotation: np.ndarray,
-    sole_height: np.ndarray,
+    plate_position: np.ndarray,
+    plate_rotation: np.ndarray,
+    plate_velocity: np.ndarray,
+    plate_acceleration: np.ndarray,
     velocity: np.ndarray,
     rate: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Rows J_c (6 S, nv) and values dv_c - dJ_c v (6 S,) that keep feet still, flat and on the ground (Eq. 31).
+    """Rows J_c (6 S, nv) and values dv_c - dJ_c v (6 S,) that keep feet at rest and flat on their plates (Eq. 31).
 
-    dv_c = -2 kappa J_c v - kappa^2 e, with the error e in height and tilt only: a foot that has slipped stays
-    where it is.
+    dv_c = dv_p - 2 kappa (J_c v - v_p) - kappa^2 e, with the motion v_p, dv_p of the plate where the sole is, and
+    the error e in distance and tilt only: a foot that has slipped stays where it is.
 
     Args:
         stance: indices of the stance feet (S,).
@@ -155,7 +161,10 @@ def standing_feet(
         sole_bias: dJ v of all soles (F, 6), m/s^2 and rad/s^2.
         sole_position: origins of all soles (F, 3), m.
         sole_rotation: axes of all soles in the world (F, 3, 3).
-        sole_height: height of the ground under all soles (F,), m.
+        plate_position: a point of the plate under each sole (F, 3), m.
+        plate_rotation: axes of those plates, normals n last (F, 3, 3).
+        plate_velocity: of those points and plates (F, 6), m/s and rad/s.
+        plate_acceleration: likewise (F, 6), m/s^2 and rad/s^2.
         velocity: v (nv,).
         rate: kappa, 1/s.
     """
@@ -163,14 +172,19 @@ def standing_feet(
     rows, values = np.empty((6 * len(stance), size)), np.empty(6 * len(stance))
     error = np.zeros(6)
     for place, foot in enumerate(stance):
-        error[2] = sole_position[foot, 2] - sole_height[foot]
-        error[3], error[4] = -sole_rotation[foot, 1, 2], sole_rotation[foot, 0, 2]
+        sole, plate, normal = sole_position[foot], plate_position[foot], plate_rotation[foot, :, 2]
+        error[:3] = distance_above(plate, plate_rotation[foot], sole) * normal
+        error[3:] = cross(normal, sole_rotation[foot, :, 2])
+        carried = velocity_at(sole, plate, plate_velocity[foot])
+        speeding = acceleration_at(sole, plate, plate_velocity[foot], plate_acceleration[foot])
         for i in range(6):
-            moving = 0.0
+            moving = -carried[i]
             for j in range(size):
                 rows[6 * place + i, j] = sole_jacobian[foot, i, j]
                 moving += sole_jacobian[foot, i, j] * velocity[j]
-            values[6 * place + i] = -2.0 * rate * moving - rate**2 * error[i] - sole_bias[foot, i]
+            values[6 * place + i] = (
+                speeding[i] - 2.0 * rate * moving - rate**2 * error[i] - sole_bias[foot, i]
+            )
     return rows, values
 
 
@@ -266,8 +280,10 @@ def stacked_bounds(
     f"{_VECTOR}, {_VECTOR}, {_MATRIX}, {_VECTOR}, f8[:, :], {_MATRIX}, {_VECTOR}, "
     # the pelvis: J_p, dJ_p v, R_p, R_d
     f"f8[:, :], {_VECTOR}, f8[:, :], f8[:, :], "
-    # the soles: stance, J, dJ v, positions, axes, heights of the ground, wrenches
-    f"i8[::1], f8[:, :, ::1], {_MATRIX}, {_MATRIX}, f8[:, :, ::1], {_VECTOR}, {_MATRIX}, "
+    # the soles: stance, J, dJ v, positions, axes
+    f"i8[::1], f8[:, :, ::1], {_MATRIX}, {_MATRIX}, f8[:, :, ::1], "
+    # the plates under them: positions, axes, velocities, accelerations; and the wrenches
+    f"{_MATRIX}, f8[:, :, ::1], {_MATRIX}, {_MATRIX}, {_MATRIX}, "
     # the joints: posture, free joints, limits of position and torque
     f"{_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_VECTOR}, "
     # what matters: mass, w_b, w_p, ridge, k, d, kappa of contact and of joint limits, margin of joint limits
@@ -290,7 +306,10 @@ def acceleration_program(
     sole_bias: np.ndarray,
     sole_position: np.ndarray,
     sole_rotation: np.ndarray,
-    sole_height: np.ndarray,
+    plate_position: np.ndarray,
+    plate_rotation: np.ndarray,
+    plate_velocity: np.ndarray,
+    plate_acceleration: np.ndarray,
     wrench: np.ndarray,
     home: np.ndarray,
     free: np.ndarray,
@@ -333,7 +352,17 @@ def acceleration_program(
     weight, wanted = posture(q, v, home, free, rest_weight, ridge, stiffness, damping)
     hessian, gradient = least_squares(rows, target, weight, wanted)
     still, rest = standing_feet(
-        stance, sole_jacobian, sole_bias, sole_position, sole_rotation, sole_height, v, contact_rate
+        stance,
+        sole_jacobian,
+        sole_bias,
+        sole_position,
+        sole_rotation,
+        plate_position,
+        plate_rotation,
+        plate_velocity,
+        plate_acceleration,
+        v,
+        contact_rate,
     )
     torques, offset = torque_ratio(mass_matrix, nonlinear_effects, sole_jacobian, wrench, effort_limit)
     low, high = braking_bounds(q[7:], v[6:], position_lower, position_upper, limit_rate, limit_margin)

@@ -75,7 +75,7 @@ class AccelerationProgram:
         Args:
             dynamics: the state with everything computed.
             feet: admissible wrenches of the feet and the momentum rate dh_a they cause.
-            reference: the posture, the pelvis axes and the height of the ground.
+            reference: the posture, the pelvis axes and the plates under the feet.
             weights: what matters how much.
 
         Returns:
@@ -105,7 +105,7 @@ class AccelerationProgram:
         Args:
             dynamics: the state with everything computed.
             desired: dh_d (6,), N and N m, of which the controlled directions count.
-            reference: the posture, the pelvis axes, the height of the ground, the controlled directions.
+            reference: the posture, the pelvis axes, the plates under the feet, the controlled directions.
             weights: what matters how much.
 
         Returns:
@@ -155,7 +155,10 @@ class AccelerationProgram:
             dynamics.sole_bias,
             dynamics.sole_position,
             dynamics.sole_rotation,
-            reference.sole_height,
+            reference.ground.position,
+            reference.ground.rotation,
+            reference.ground.velocity,
+            reference.ground.acceleration,
             wrench,
             reference.posture_ahead(weights.damping / weights.stiffness if weights.stiffness else 0.0),
             self._free_joints,
@@ -177,14 +180,17 @@ class AccelerationProgram:
 def contact_constraint(
     dynamics: Dynamics, stance: tuple[int, ...], reference: Reference, contact_rate: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Rows J_c (6 S, nv) and values dv_c - dJ_c v (6 S,) that keep S stance feet still: see `standing_feet`."""
+    """Rows J_c (6 S, nv) and values dv_c - dJ_c v (6 S,) that keep S feet on their plates: see `standing_feet`."""
     return standing_feet(
         _indices(stance),
         dynamics.sole_jacobian,
         dynamics.sole_bias,
         dynamics.sole_position,
         dynamics.sole_rotation,
-        reference.sole_height,
+        reference.ground.position,
+        reference.ground.rotation,
+        reference.ground.velocity,
+        reference.ground.acceleration,
         dynamics.state.v,
         contact_rate,
     )

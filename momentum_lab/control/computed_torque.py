@@ -119,7 +119,7 @@ class ComputedTorque:
         forces, bounds and torques stay consistent.
         """
         desired = self._desired_rate(dynamics, reference, gains)
-        carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.sole_height)
+        carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.ground)
         if not carrying:
             return self._fallback(dynamics, reference, desired, "no foot is on the ground")
         stance = self.footing.stance_feet(dynamics, carrying, gains.safe_border)

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from momentum_lab.momentum.directions import ALL, Directions
+from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.robot.state import Dynamics
 
 SLACKS = ("com x", "com y", "com z", "pelvis x", "pelvis y", "pelvis z", "swing foot", "posture")
@@ -22,13 +23,14 @@ class Reference:
     Attributes:
         com: desired centre of mass r_d in the world (3,), m.
         com_velocity: its desired velocity (3,), m/s.
+        com_acceleration: its desired acceleration (3,), m/s^2.
         angular_momentum: desired angular momentum k_d about the CoM (3,), N m s.
         angular_momentum_rate: how fast k_d changes (3,), N m; None: it does not.
         posture: desired joint angles (na,), rad.
         posture_rate: how fast the desired joint angles change (na,), rad/s; None: they do not.
         pelvis_rotation: desired pelvis axes in the world (3, 3).
         stance: the feet that carry the robot, as indices.
-        sole_height: height of the ground under each sole origin (F,), m.
+        ground: the plates under the feet, as the robot is told of them.
         controlled: which of l_x, l_y, l_z, k_x, k_y, k_z are asked for; the others are left free
             (section 5.3.1).
         planner: what makes the rates that are asked for out of Eqs. 37 and 38, a row of Table 1.
@@ -36,11 +38,12 @@ class Reference:
 
     com: np.ndarray
     com_velocity: np.ndarray
+    com_acceleration: np.ndarray
     angular_momentum: np.ndarray
     posture: np.ndarray
     pelvis_rotation: np.ndarray
     stance: tuple[int, ...]
-    sole_height: np.ndarray
+    ground: FootGround
     controlled: Directions = ALL
     planner: str = "momentum"
     posture_rate: np.ndarray | None = None

@@ -15,12 +15,13 @@ def desired_linear_rate(
 ) -> np.ndarray:
     """The linear momentum rate that brings the CoM to its reference.
 
-    Eq. 38: dl_d/dt = m [Gamma_21 (dr_d - dr) + Gamma_22 (r_d - r)].
+    Eq. 38: dl_d/dt = m [ddr_d + Gamma_21 (dr_d - dr) + Gamma_22 (r_d - r)], with the acceleration of a goal that
+    moves with the ground, which the chapter leaves out.
 
     Args:
         mass: total mass m, kg.
         dynamics: the state with everything computed.
-        reference: holds r_d, m, and dr_d, m/s.
+        reference: holds r_d, m, dr_d, m/s, and ddr_d, m/s^2.
         damping: Gamma_21, 1/s, the same in all directions.
         stiffness: Gamma_22, 1/s^2, the same in all directions.
 
@@ -29,6 +30,7 @@ def desired_linear_rate(
     """
     return _linear_rate(
         mass,
+        reference.com_acceleration,
         reference.com_velocity,
         dynamics.com_velocity,
         reference.com,
@@ -89,6 +91,7 @@ def desired_momentum_rate(
     """
     return _momentum_rate(
         mass,
+        reference.com_acceleration,
         reference.com_velocity,
         dynamics.com_velocity,
         reference.com,
@@ -105,9 +108,10 @@ def desired_momentum_rate(
     )
 
 
-@compiled("f8[::1](f8, f8[::1], f8[::1], f8[::1], f8[::1], f8, f8)")
+@compiled("f8[::1](f8, f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], f8, f8)")
 def _linear_rate(
     mass: float,
+    desired_acceleration: np.ndarray,
     desired_velocity: np.ndarray,
     velocity: np.ndarray,
     desired: np.ndarray,
@@ -115,7 +119,8 @@ def _linear_rate(
     damping: float,
     stiffness: float,
 ) -> np.ndarray:
-    return mass * (damping * (desired_velocity - velocity) + stiffness * (desired - com))
+    pulled = damping * (desired_velocity - velocity) + stiffness * (desired - com)
+    return mass * (desired_acceleration + pulled)
 
 
 @compiled("f8[::1](f8[::1], f8[::1], f8[:, :], f8[:, :], f8[:, :], f8, f8)")
@@ -137,10 +142,12 @@ def _angular_rate(
 
 
 @compiled(
-    "f8[::1](f8, f8[::1], f8[::1], f8[::1], f8[::1], f8, f8, f8[::1], f8[::1], f8[:, :], f8[:, :], f8[:, :], f8, f8)"
+    "f8[::1](f8, f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], f8, f8, f8[::1], f8[::1], "
+    "f8[:, :], f8[:, :], f8[:, :], f8, f8)"
 )
 def _momentum_rate(
     mass: float,
+    desired_acceleration: np.ndarray,
     desired_velocity: np.ndarray,
     velocity: np.ndarray,
     desired: np.ndarray,
@@ -156,7 +163,9 @@ def _momentum_rate(
     pelvis_stiffness: float,
 ) -> np.ndarray:
     rate = np.empty(6)
-    rate[:3] = _linear_rate(mass, desired_velocity, velocity, desired, com, linear_damping, linear_stiffness)
+    rate[:3] = _linear_rate(
+        mass, desired_acceleration, desired_velocity, velocity, desired, com, linear_damping, linear_stiffness
+    )
     rate[3:] = _angular_rate(
         momentum, desired_momentum, locked_inertia, pelvis, desired_pelvis, angular_damping, pelvis_stiffness
     )

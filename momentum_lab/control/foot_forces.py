@@ -23,6 +23,7 @@ from momentum_lab.control.foot_programs import (
     quiet_share,
 )
 from momentum_lab.control.qp import CERTIFIED, QuadraticProgram, solve
+from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.support import inset_rectangle
 from momentum_lab.momentum.wrench import cross
@@ -144,17 +145,23 @@ class Footing:
         return StanceFeet(stance, safe, *placed)
 
     def on_the_ground(
-        self, dynamics: Dynamics, stance: tuple[int, ...], sole_height: np.ndarray
+        self, dynamics: Dynamics, stance: tuple[int, ...], ground: FootGround
     ) -> tuple[int, ...]:
         """The stance feet whose soles are near the ground: a foot in the air carries nothing.
 
         Args:
             dynamics: the state with everything computed.
             stance: the feet that are meant to carry, as indices.
-            sole_height: height of the ground under each sole (F,), m.
+            ground: the plates under the feet.
         """
         near = near_the_ground(
-            dynamics.sole_position, dynamics.sole_rotation, self._lower, self._upper, sole_height, _IN_THE_AIR
+            dynamics.sole_position,
+            dynamics.sole_rotation,
+            self._lower,
+            self._upper,
+            ground.position,
+            ground.rotation,
+            _IN_THE_AIR,
         ).tolist()
         return tuple([foot for foot in stance if near[foot]])
 

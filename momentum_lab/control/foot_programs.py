@@ -9,6 +9,7 @@ import numpy as np
 
 from momentum_lab.compiled import compiled
 from momentum_lab.control.optimality import judged_minimum
+from momentum_lab.momentum.foot_ground import distance_above
 from momentum_lab.momentum.polygon import convex_hull
 from momentum_lab.momentum.wrench import cross
 
@@ -57,30 +58,35 @@ def placed_feet(
     return to_sole, to_ankle, axes, convex_hull(placed), height
 
 
-@compiled(f"b1[::1]({_MATRIX}, {_STACK}, {_MATRIX}, {_MATRIX}, {_VECTOR}, f8)")
+@compiled(f"b1[::1]({_MATRIX}, {_STACK}, {_MATRIX}, {_MATRIX}, {_MATRIX}, {_STACK}, f8)")
 def near_the_ground(
     position: np.ndarray,
     rotation: np.ndarray,
     lower: np.ndarray,
     upper: np.ndarray,
-    sole_height: np.ndarray,
+    plate_position: np.ndarray,
+    plate_rotation: np.ndarray,
     margin: float,
 ) -> np.ndarray:
-    """Whether the lowest corner of each sole is less than a margin (m) above the ground (F,).
+    """Whether the lowest corner of each sole is less than a margin (m) above its plate (F,).
 
     Args:
         position: sole origins in the world (F, 3), m.
         rotation: axes of the soles in the world (F, 3, 3).
         lower: rear right corners in the sole frames (F, 2), m.
         upper: front left corners likewise (F, 2), m.
-        sole_height: height of the ground under each sole (F,), m.
+        plate_position: a point of the plate under each sole (F, 3), m.
+        plate_rotation: axes of those plates, normals last (F, 3, 3).
         margin: m.
     """
     near = np.empty(len(position), dtype=np.bool_)
     for foot in range(len(position)):
-        height = position[foot, 2] - sole_height[foot]
+        normal = plate_rotation[foot, :, 2]
+        height = distance_above(plate_position[foot], plate_rotation[foot], position[foot])
         for k in range(2):
-            slope = rotation[foot, 2, k]
+            slope = 0.0
+            for i in range(3):
+                slope += normal[i] * rotation[foot, i, k]
             height += min(slope * lower[foot, k], slope * upper[foot, k])
         near[foot] = height < margin
     return near

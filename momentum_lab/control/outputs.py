@@ -60,7 +60,7 @@ def com_output(
 ) -> Output:
     """Position of the CoM along the axes that are asked for; J = A_lin / m."""
     axes = [axis for axis in range(3) if reference.controlled[axis]]
-    desired = spring.damping * (reference.com_velocity - dynamics.com_velocity)
+    desired = reference.com_acceleration + spring.damping * (reference.com_velocity - dynamics.com_velocity)
     desired += spring.stiffness * (reference.com - dynamics.com_in_world)
     return Output(
         "com",

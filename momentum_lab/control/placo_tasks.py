@@ -13,7 +13,8 @@ from momentum_lab.control.controller import Reference
 from momentum_lab.control.placo_body import follow, middle_frame, middle_of, placo_body
 from momentum_lab.errors import SolverError
 from momentum_lab.momentum.directions import axes
-from momentum_lab.momentum.wrench import shift_wrench, wrench_in_world_axes
+from momentum_lab.momentum.foot_ground import acceleration_at, distance_above, velocity_at
+from momentum_lab.momentum.wrench import cross, shift_wrench, wrench_in_world_axes
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -121,6 +122,7 @@ class PlacoTasks:
         self._pelvis.configure("pelvis", "soft", _SECOND ** (1.0 - priority) * _FIRST**priority)
         self._com.mask.set_axises(axes(reference.controlled)[0], "task")
         self._com.target_world, self._com.dtarget_world = reference.com, reference.com_velocity
+        self._com.ddtarget_world = reference.com_acceleration
         self._pelvis.R_world_frame = reference.pelvis_rotation
         posture = reference.posture_ahead(_lead(laws.posture))
         self._posture.set_joints(dict(zip(self.robot.joint_names, posture.tolist(), strict=True)))
@@ -133,14 +135,20 @@ class PlacoTasks:
         return WholeBodyAnswer(result.tau[6:].copy(), result.qdd.copy(), self._wrenches(dynamics))
 
     def _hold_feet(self, dynamics: Dynamics, reference: Reference, laws: TaskLaws) -> None:
-        """Eq. 31 as PlaCo's frame tasks: at rest and flat where they are, dv_c = -2 kappa J_c v - kappa^2 e."""
+        """Eq. 31 as PlaCo's frame tasks: flat on their plates and moving with them (see `standing_feet`)."""
         law = Law(laws.contact_rate**2, 2.0 * laws.contact_rate)
         for foot, task, contact in zip(self.stance, self._feet, self._contacts, strict=True):
             sole = self.robot.soles[foot]
             position, rotation = dynamics.sole_position[foot], dynamics.sole_rotation[foot]
             there = position + rotation @ middle_of(sole)
-            task.position().target_world = np.array([there[0], there[1], reference.sole_height[foot]])
-            task.orientation().R_world_frame = _laid_flat(rotation)
+            plate, axes_of_plate = reference.ground.position[foot], reference.ground.rotation[foot]
+            normal, moving = axes_of_plate[:, 2], reference.ground.velocity[foot]
+            carried = velocity_at(there, plate, moving)
+            speeding = acceleration_at(there, plate, moving, reference.ground.acceleration[foot])
+            task.position().target_world = there - distance_above(plate, axes_of_plate, there) * normal
+            task.position().dtarget_world, task.position().ddtarget_world = carried[:3], speeding[:3]
+            task.orientation().R_world_frame = _laid_flat(rotation, normal)
+            task.orientation().omega_world, task.orientation().domega_world = carried[3:], speeding[3:]
             _obey(task.position(), law)
             _obey(task.orientation(), law)
             contact.length, contact.width = (sole.upper - sole.lower - 2.0 * laws.safe_border).tolist()
@@ -177,8 +185,8 @@ def _obey(task: Any, law: Law) -> None:
     task.kp, task.kd = law.stiffness, law.damping
 
 
-def _laid_flat(rotation: np.ndarray) -> np.ndarray:
-    """The nearest axes with z up: turned by the angle between the two normals, heading kept."""
-    forward = rotation[:, 0]
-    c, s = np.array([forward[0], forward[1]]) / math.hypot(forward[0], forward[1])
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+def _laid_flat(rotation: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Axes whose z is a normal (3,), the sole's own heading kept: x is its forward axis, laid into the plate."""
+    forward = rotation[:, 0] - (rotation[:, 0] @ normal) * normal
+    forward /= math.sqrt(forward @ forward)
+    return np.column_stack([forward, cross(normal, forward), normal])

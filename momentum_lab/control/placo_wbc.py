@@ -70,7 +70,7 @@ class PlacoWbc:
         Priority weighs the CoM against the pelvis: 0 is 100 to 1, 1 is 1 to 100. Of the desired momentum rate
         the linear part is the CoM task's, the angular part the one that comes of it.
         """
-        carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.sole_height)
+        carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.ground)
         linear = desired_linear_rate(
             self.robot.mass, dynamics, reference, gains.com_damping, gains.com_stiffness
         )

@@ -15,6 +15,7 @@ from momentum_lab.control.held_feet import holding_torque, motion_of_held_feet, 
 from momentum_lab.control.placo_rates import MomentumGoal, PlacoRates
 from momentum_lab.errors import SolverError
 from momentum_lab.momentum.centroidal import momentum_rate
+from momentum_lab.momentum.foot_ground import FootGround, velocity_at
 from momentum_lab.momentum.ground import cop_from_momentum_rate
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
@@ -115,7 +116,7 @@ class ResolvedMomentum:
         The momentum rate, desired and admissible alike, is the one that the torques would cause if the ground
         held the feet like glue, and so are the foot wrenches and the CoP: they may well be impossible.
         """
-        carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.sole_height)
+        carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.ground)
         if not carrying:
             return self._fallback(dynamics, reference, memory, "no foot is on the ground")
         try:
@@ -177,9 +178,10 @@ class ResolvedMomentum:
         )
         if reference.stance not in self._rates:
             self._rates[reference.stance] = PlacoRates(self.robot, reference.stance, self.timestep)
-        footholds = memory.footholds[list(reference.stance)]
-        rates = self._rates[reference.stance].solve(memory.q, footholds, goal)
-        return replace(memory, q=self.robot.integrate(memory.q, rates * self.timestep), v=rates)
+        footholds = carried_footholds(memory.footholds, reference.ground, self.timestep)
+        rates = self._rates[reference.stance].solve(memory.q, footholds[list(reference.stance)], goal)
+        q = self.robot.integrate(memory.q, rates * self.timestep)
+        return replace(memory, q=q, v=rates, footholds=footholds)
 
     def _servo_torque(
         self, dynamics: Dynamics, command: SetPoint, gains: ResolvedMomentumGains
@@ -209,3 +211,23 @@ class ResolvedMomentum:
             torque=hold_posture(self.robot, dynamics, reference.posture),
             failure=f"{reason}; {HOLD_IN_WORDS}",
         )
+
+
+def carried_footholds(footholds: np.ndarray, ground: FootGround, timestep: float) -> np.ndarray:
+    """Footholds one step later on plates that move: the v_c of Eq. 24 (F, 4, 4), m; the same while all are still.
+
+    Args:
+        footholds: poses of the soles (F, 4, 4), m.
+        ground: the plates under the feet.
+        timestep: s.
+    """
+    if not ground.velocity.any():
+        return footholds
+    carried = footholds.copy()
+    for foot, pose in enumerate(footholds):
+        velocity = velocity_at(
+            np.ascontiguousarray(pose[:3, 3]), ground.position[foot], ground.velocity[foot]
+        )
+        carried[foot, :3, 3] += timestep * velocity[:3]
+        carried[foot, :3, :3] = pin.exp3(timestep * velocity[3:]) @ pose[:3, :3]
+    return carried

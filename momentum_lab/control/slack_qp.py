@@ -100,7 +100,7 @@ class SlackQP:
         between them it goes evenly on a logarithmic scale. Of the directions of momentum only the linear ones
         are outputs here (section 5.2 has no angular goal): the CoM is left free along those not asked for.
         """
-        carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.sole_height)
+        carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.ground)
         if not carrying:
             return hold(self.robot, dynamics, reference, "no foot is on the ground", memory)
         outputs = self._outputs(dynamics, reference, gains, priority)

@@ -10,8 +10,11 @@ from momentum_lab.compiled import compiled
 from momentum_lab.control.controller import Reference
 from momentum_lab.control.planner import OWN
 from momentum_lab.momentum.directions import ALL, Directions
+from momentum_lab.momentum.foot_ground import FootGround, acceleration_at, height_below, velocity_at
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
+
+_MATRIX, _VECTOR, _STACK = "f8[:, ::1]", "f8[::1]", "f8[:, :, ::1]"
 
 
 class StandingGoal:
@@ -31,42 +34,46 @@ class StandingGoal:
         self.posture = home.state.q[7:].copy()
         self._centers = np.array([np.append((sole.lower + sole.upper) / 2.0, 0.0) for sole in robot.soles])
         self._share = np.array([(foot in stance) / len(stance) for foot in range(len(robot.soles))])
-        center, heading = self._place(home)
+        center, heading = stance_place(home.sole_position, home.sole_rotation, self._centers, self._share)
         self._height = home.com_in_world[2] - center[2]
         self._pelvis = turned_about_vertical(-heading, np.ascontiguousarray(home.pelvis_rotation))
-        self._still = np.zeros(3)
-        self._level = np.zeros(len(robot.soles))
+        self._no_turning = np.zeros(3)
 
-    def reference(self, dynamics: Dynamics, controlled: Directions = ALL, planner: str = OWN) -> Reference:
-        """The goal for a state whose soles are where `dynamics` says, on level ground at height 0.
+    def reference(
+        self, dynamics: Dynamics, ground: FootGround, controlled: Directions = ALL, planner: str = OWN
+    ) -> Reference:
+        """The goal for a state whose soles are where `dynamics` says, and for the plates under them.
 
         Args:
             dynamics: the state with everything computed.
+            ground: the plates under the feet.
             controlled: the directions of momentum that are asked for (section 5.3.1).
             planner: a row of Table 1.
         """
-        com, pelvis = standing_goal(
+        com, velocity, acceleration, pelvis = standing_goal(
             dynamics.sole_position,
             dynamics.sole_rotation,
             self._centers,
             self._share,
+            ground.position,
+            ground.rotation,
+            ground.velocity,
+            ground.acceleration,
             self._height,
             self._pelvis,
         )
         return Reference(
             com=com,
-            com_velocity=self._still,
-            angular_momentum=self._still,
+            com_velocity=velocity,
+            com_acceleration=acceleration,
+            angular_momentum=self._no_turning,
             posture=self.posture,
             pelvis_rotation=pelvis,
             stance=self.stance,
-            sole_height=self._level,
+            ground=ground,
             controlled=controlled,
             planner=planner,
         )
-
-    def _place(self, dynamics: Dynamics) -> tuple[np.ndarray, float]:
-        return stance_place(dynamics.sole_position, dynamics.sole_rotation, self._centers, self._share)
 
 
 @compiled("Tuple((f8[::1], f8))(f8[:, ::1], f8[:, :, ::1], f8[:, ::1], f8[::1])")
@@ -99,25 +106,48 @@ def turned_about_vertical(angle: float, rotation: np.ndarray) -> np.ndarray:
     return turned
 
 
-@compiled("Tuple((f8[::1], f8[:, ::1]))(f8[:, ::1], f8[:, :, ::1], f8[:, ::1], f8[::1], f8, f8[:, ::1])")
+@compiled(
+    f"Tuple(({_VECTOR}, {_VECTOR}, {_VECTOR}, {_MATRIX}))({_MATRIX}, {_STACK}, {_MATRIX}, {_VECTOR}, "
+    f"{_MATRIX}, {_STACK}, {_MATRIX}, {_MATRIX}, f8, {_MATRIX})"
+)
 def standing_goal(
     position: np.ndarray,
     rotation: np.ndarray,
     centers: np.ndarray,
     share: np.ndarray,
+    plate_position: np.ndarray,
+    plate_rotation: np.ndarray,
+    plate_velocity: np.ndarray,
+    plate_acceleration: np.ndarray,
     com_height: float,
     pelvis: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
-    """r_d (3,), m, above the middle of the stance feet, and pelvis axes (3, 3) that face where they face.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """r_d (3,), m, above the middle of the stance feet, moving with it, and pelvis axes that face where they face.
+
+    The middle is that of the plates under the soles' centres: a foot that lifts does not lift the CoM.
 
     Args:
         position: see `stance_place` for this and the next three (F, 3), m.
         rotation: (F, 3, 3).
         centers: (F, 3), m.
         share: (F,).
-        com_height: of r_d, m.
+        plate_position: a point of the plate under each foot (F, 3), m.
+        plate_rotation: axes of the plates, normals last (F, 3, 3).
+        plate_velocity: of those points and plates (F, 6), m/s and rad/s.
+        plate_acceleration: likewise (F, 6), m/s^2 and rad/s^2.
+        com_height: of r_d above the plates, m.
         pelvis: pelvis axes of a robot that faces along x (3, 3).
+
+    Returns:
+        r_d, its velocity and acceleration (3,), and the axes (3, 3).
     """
     com, heading = stance_place(position, rotation, centers, share)
-    com[2] = com_height
-    return com, turned_about_vertical(heading, pelvis)
+    ground, velocity, acceleration = 0.0, np.zeros(3), np.zeros(3)
+    for foot in range(len(share)):
+        center = position[foot] + rotation[foot] @ centers[foot]
+        at, moving = plate_position[foot], plate_velocity[foot]
+        ground += share[foot] * height_below(at, plate_rotation[foot], center[0], center[1])
+        velocity += share[foot] * velocity_at(center, at, moving)[:3]
+        acceleration += share[foot] * acceleration_at(center, at, moving, plate_acceleration[foot])[:3]
+    com[2] = ground + com_height
+    return com, velocity, acceleration, turned_about_vertical(heading, pelvis)

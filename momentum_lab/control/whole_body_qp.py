@@ -119,7 +119,7 @@ class WholeBodyQP:
         keeps linear momentum, priority 1 angular momentum, evenly on a logarithmic scale between. Directions that
         are not asked for have no term (section 5.3.1); what is desired there is what comes out.
         """
-        carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.sole_height)
+        carrying = self.footing.on_the_ground(dynamics, reference.stance, reference.ground)
         if not carrying:
             return hold(self.robot, dynamics, reference, "no foot is on the ground", memory)
         desired = self.desired_rate(dynamics, reference, gains)

@@ -1,9 +1,9 @@
 """Frictional unilateral contact of rigid bodies, solved as one impulse problem per step.
 
-For every contact point with velocity u = W lambda + g in its ground axes, the impulse lambda obeys Signorini's
-and Coulomb's laws: it lies in the friction cone, the normal velocity does not close the gap, and a point that
-slides is braked against its sliding. W = J H^-1 J^T is the Delassus matrix and g the velocity without contact
-plus gap / dt along the normals.
+For every contact point with velocity u = W lambda + g against its ground, in the axes of that ground, the
+impulse lambda obeys Signorini's and Coulomb's laws: it lies in the friction cone, the normal velocity does not
+close the gap, and a point that slides is braked against its sliding. W = J H^-1 J^T is the Delassus matrix and g
+the velocity without contact, less that of a moving ground, plus gap / dt along the normals.
 
 The points of one body move with its frame, so J = S J_f with the Jacobians J_f of few frames, and W is
 S (J_f H^-1 J_f^T) S^T: on two feet 12 columns go through the Cholesky factor of H instead of 24. Pinocchio's own
@@ -50,12 +50,14 @@ class Contacts:
         spread: S, from those to the velocity of each point in the axes of its ground, normal last (3 n, 6 B).
         gap: height of each point above its ground (n,), m.
         friction: Coulomb coefficient of each point (n,).
+        ground_velocity: of the ground that carries each body's frame along, world-aligned (6 B,), m/s and rad/s.
     """
 
     frame_jacobian: np.ndarray
     spread: np.ndarray
     gap: np.ndarray
     friction: np.ndarray
+    ground_velocity: np.ndarray
 
     @property
     def jacobian(self) -> np.ndarray:
@@ -112,6 +114,7 @@ def solve_contact(
         contacts.spread,
         contacts.gap,
         contacts.friction,
+        contacts.ground_velocity,
         timestep,
     )
     if answer[-1] <= _PRECISION:
@@ -135,6 +138,7 @@ def _sliding(
     free_velocity, half, coupling, drift = contact_problem(
         factor, free_impulse, velocity, contacts.frame_jacobian
     )
+    drift -= contacts.ground_velocity
     solver = _solve_cones(coupling, drift, closing, contacts)
     impulse = solver.getPrimalSolution().copy()  # read-only
     velocity, frame_impulse = moved(factor, half, free_velocity, contacts.spread, impulse)
@@ -254,7 +258,7 @@ def closing_speed(gap: np.ndarray, timestep: float) -> np.ndarray:
 
 @compiled(
     f"Tuple(({_VECTOR}, {_MATRIX}, {_MATRIX}, f8))"
-    f"({_MATRIX}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_VECTOR}, f8)"
+    f"({_MATRIX}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}, f8)"
 )
 def resting(
     mass_matrix: np.ndarray,
@@ -264,6 +268,7 @@ def resting(
     spread: np.ndarray,
     gap: np.ndarray,
     friction: np.ndarray,
+    ground_velocity: np.ndarray,
     timestep: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     """The end of a step in which all points come to rest, or in which there are none: all in one call.
@@ -281,6 +286,7 @@ def resting(
     free_velocity, half, coupling, drift = contact_problem(factor, free_impulse, velocity, frame_jacobian)
     if not points:
         return free_velocity, np.zeros((0, 3)), np.zeros((0, 6)), 0.0
+    drift -= ground_velocity
     closing = closing_speed(gap, timestep)
     impulse, residual = sticking_impulse(coupling, drift, spread, closing, friction)
     end, frame_impulse = moved(factor, half, free_velocity, spread, impulse)

@@ -58,7 +58,7 @@ class Simulator:
         self.ground = ground
         self.timestep = timestep
         self._weight = robot.mass * GRAVITY
-        self._soles = SolePoints(robot, ground)
+        self._soles = SolePoints(robot, ground, timestep)
         self._bodies = BodyPoints(robot, timestep)
         self._push_data = robot.model.createData()
 
@@ -76,7 +76,7 @@ class Simulator:
             force += push.generalized
         stops = joint_stops(self.robot, dynamics, self.timestep)
         mass_matrix = dynamics.mass_matrix if stops is None else _stopped(dynamics.mass_matrix, force, stops)
-        touches = self._touches(dynamics)
+        touches = self._touches(dynamics, time)
         solution = solve_contact(
             mass_matrix, self.timestep * force, dynamics.state.v, touches.contacts, self.timestep
         )
@@ -105,9 +105,9 @@ class Simulator:
             contact_residual=solution.residual,
         )
 
-    def _touches(self, dynamics: Dynamics) -> Touches:
+    def _touches(self, dynamics: Dynamics, time: float) -> Touches:
         """All points that may touch: soles, and other bodies in a fall."""
-        soles = self._soles.touches(dynamics)
+        soles = self._soles.touches(dynamics, time)
         bodies = self._bodies.touches(dynamics.state, self.ground.floor)
         return soles if bodies is None else together(soles, bodies)
 

@@ -10,6 +10,7 @@ import pinocchio as pin
 from scipy.linalg import block_diag
 
 from momentum_lab.compiled import compiled
+from momentum_lab.momentum.foot_ground import velocity_at
 from momentum_lab.physics.contact import Contacts
 from momentum_lab.physics.ground import Ground, Patch
 from momentum_lab.robot.model import RobotModel
@@ -40,27 +41,31 @@ class Touches:
 
 
 class SolePoints:
-    """The four corners of each sole, over the planes of a ground."""
+    """The four corners of each sole, over the plates of a ground."""
 
-    def __init__(self, robot: RobotModel, ground: Ground) -> None:
-        planes = ground.under_feet
+    def __init__(self, robot: RobotModel, ground: Ground, timestep: float) -> None:
+        self._ground = ground
+        self._half_step = 0.5 * timestep
         self._corners = np.array([sole.corners for sole in robot.soles])
-        self._plane_origin = np.array([plane.origin for plane in planes])
-        self._plane_axes = np.array([plane.rotation for plane in planes])
-        self._friction = np.array([plane.friction for plane in planes])
 
-    def touches(self, dynamics: Dynamics) -> Touches:
-        """The corners of all feet that are not wholly clear of the ground."""
-        jacobian, spread, gap, friction, position, origin, foot = placed_soles(
+    def touches(self, dynamics: Dynamics, time: float) -> Touches:
+        """The corners of all feet that are not wholly clear of the ground at a time of the run, s.
+
+        Plates are where they are at the start of a step, and have the velocity of its middle: so the way they go
+        in it is right to third order.
+        """
+        plates, on_the_way = self._ground.at(time), self._ground.at(time + self._half_step)
+        *contacts, position, origin, foot = placed_soles(
             self._corners,
             dynamics.sole_position,
             dynamics.sole_rotation,
             dynamics.sole_jacobian,
-            self._plane_origin,
-            self._plane_axes,
-            self._friction,
+            plates.position,
+            plates.rotation,
+            on_the_way.velocity,
+            self._ground.friction(time),
         )
-        return Touches(Contacts(jacobian, spread, gap, friction), position, origin, foot)
+        return Touches(Contacts(*contacts), position, origin, foot)
 
 
 @compiled("f8[:, ::1](f8[:, ::1], f8[::1], f8[:, ::1])")
@@ -84,8 +89,8 @@ def spread_of(points: np.ndarray, origin: np.ndarray, axes: np.ndarray) -> np.nd
 
 
 @compiled(
-    f"Tuple(({_MATRIX}, {_MATRIX}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_MATRIX}, i8[::1]))"
-    f"({_STACK}, {_MATRIX}, {_STACK}, {_STACK}, {_MATRIX}, {_STACK}, {_VECTOR})"
+    f"Tuple(({_MATRIX}, {_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_MATRIX}, i8[::1]))"
+    f"({_STACK}, {_MATRIX}, {_STACK}, {_STACK}, {_MATRIX}, {_STACK}, {_MATRIX}, {_VECTOR})"
 )
 def placed_soles(
     corners: np.ndarray,
@@ -94,8 +99,9 @@ def placed_soles(
     jacobian: np.ndarray,
     plane_origin: np.ndarray,
     plane_axes: np.ndarray,
+    plane_velocity: np.ndarray,
     friction: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The corners of the soles that have any of them near their plane, as B bodies.
 
     Args:
@@ -105,10 +111,12 @@ def placed_soles(
         jacobian: of the soles, world-aligned (F, 6, nv).
         plane_origin: a point of the plane under each foot (F, 3), m.
         plane_axes: axes of those planes, their normals last (F, 3, 3).
+        plane_velocity: of those points and planes, linear before angular (F, 6), m/s and rad/s.
         friction: Coulomb coefficients of those planes (F,).
 
     Returns:
-        J_f (6 B, nv), S (12 B, 6 B), gaps (4 B,), friction (4 B,), positions (4 B, 3), origins (B, 3), feet (B,).
+        J_f (6 B, nv), S (12 B, 6 B), gaps (4 B,), friction (4 B,), velocities of the ground (6 B,),
+        positions (4 B, 3), origins (B, 3), feet (B,).
     """
     position, gap = np.empty_like(corners), np.zeros(corners.shape[:2])
     near = np.zeros(len(corners), dtype=np.bool_)
@@ -123,8 +131,9 @@ def placed_soles(
             near[foot] |= not gap[foot, i] > _MARGIN
     feet = np.flatnonzero(near)
     bodies = len(feet)
-    spread = np.zeros((12 * bodies, 6 * bodies))
+    spread, carried = np.zeros((12 * bodies, 6 * bodies)), np.empty(6 * bodies)
     for body, foot in enumerate(feet):
+        carried[6 * body : 6 * body + 6] = velocity_at(origin[foot], plane_origin[foot], plane_velocity[foot])
         spread[12 * body : 12 * body + 12, 6 * body : 6 * body + 6] = spread_of(
             position[foot], origin[foot], plane_axes[foot]
         )
@@ -133,6 +142,7 @@ def placed_soles(
         spread,
         gap[feet].ravel(),
         np.repeat(friction[feet], 4),
+        carried,
         position[feet].reshape(-1, 3),
         origin[feet],
         feet,
@@ -148,6 +158,7 @@ def together(first: Touches, second: Touches) -> Touches:
             spread=block_diag(one.spread, other.spread),
             gap=np.concatenate([one.gap, other.gap]),
             friction=np.concatenate([one.friction, other.friction]),
+            ground_velocity=np.concatenate([one.ground_velocity, other.ground_velocity]),
         ),
         position=np.concatenate([first.position, second.position]),
         origin=np.concatenate([first.origin, second.origin]),
@@ -215,7 +226,7 @@ class BodyPoints:
         )
         origin = self._data.oMi[joint].translation.copy()
         spread = spread_of(position, origin, np.ascontiguousarray(floor.rotation))
-        contacts = Contacts(jacobian, spread, gap, np.full(gap.size, floor.friction))
+        contacts = Contacts(jacobian, spread, gap, np.full(gap.size, floor.friction), np.zeros(6))
         return Touches(contacts, position, origin.reshape(1, 3), _OTHER)
 
 

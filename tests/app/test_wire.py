@@ -17,6 +17,7 @@ from momentum_lab.app.wire import (
     unpacked_frame,
     unpacked_message,
 )
+from momentum_lab.physics.plate import PlateMotion
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
 
@@ -29,6 +30,10 @@ EVENTS = [
     events.SelectPlanner("cop-to-com"),
     events.SetMotion("kick"),
     events.SetAngularGoal("reference"),
+    events.SetFriction(0.2, "left"),
+    events.MoveGround(PlateMotion("pitch", -5.0, "step", 1.5), "right"),
+    events.StopGround(),
+    events.SetGroundSense("felt"),
     events.ApplyPush(Push(force=217.0, body="head", shape="half-sine")),
     events.ApplyPushes((Push(force=217.0, start=0.2), Push(velocity_change=0.1))),
     events.Reset(),

@@ -9,6 +9,7 @@ from momentum_lab.control.accelerations import AccelerationProgram, MotionWeight
 from momentum_lab.control.controller import Reference
 from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds
 from momentum_lab.control.standing import StandingGoal
+from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.posture import standing_posture
 from momentum_lab.robot.state import Dynamics, State
@@ -16,6 +17,7 @@ from tests.runs import forward_push, played
 
 G = 9.81
 BOTH = (0, 1)
+LEVEL = FootGround.level(2)
 
 
 def home(robot: RobotModel, stance: tuple[int, ...] = BOTH) -> Dynamics:
@@ -26,7 +28,7 @@ def home(robot: RobotModel, stance: tuple[int, ...] = BOTH) -> Dynamics:
 
 def goal(robot: RobotModel, dynamics: Dynamics, stance: tuple[int, ...] = BOTH) -> Reference:
     """Standing in the home posture of a stance, for a state."""
-    return StandingGoal(robot, home(robot, stance), stance).reference(dynamics)
+    return StandingGoal(robot, home(robot, stance), stance).reference(dynamics, LEVEL)
 
 
 def null_space(matrix: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ import pytest
 from momentum_lab.control.placo_tasks import Law, PlacoTasks, TaskLaws
 from momentum_lab.errors import SolverError
 from momentum_lab.momentum.directions import directions
+from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.momentum.wrench import wrench_in_frame_axes
 from tests.conftest import assert_close
 from tests.control.situations import BOTH, G, goal, home, swaying
@@ -121,7 +122,7 @@ def test_after_a_failure_it_answers_as_before(robot):
     tasks, dynamics = PlacoTasks(robot, BOTH, DT), home(robot)
     reference = goal(robot, dynamics)
     answer = tasks.solve(dynamics, reference, LAWS, 0.0)
-    floating = dataclasses.replace(reference, sole_height=np.full(2, -2.0))
+    floating = dataclasses.replace(reference, ground=FootGround.level(2, -2.0))
     with pytest.raises(SolverError, match="PlaCo finds no torques within the limits"):
         tasks.solve(dynamics, floating, LAWS, 0.0)
     assert tasks.solve(dynamics, reference, LAWS, 0.0).torque.tobytes() == answer.torque.tobytes()

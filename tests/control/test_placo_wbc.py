@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from momentum_lab.control.placo_wbc import PlacoWbc, PlacoWbcGains
+from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.physics.push import Push
 from momentum_lab.robot.state import State
 from momentum_lab.scenario import Scenario
@@ -98,7 +99,7 @@ def test_without_an_answer_the_posture_is_held_in_words(robot):
     assert output.failure is not None
     assert output.failure.startswith("no foot is on the ground; holding the posture")
     sunk = dataclasses.replace(dynamics, sole_position=dynamics.sole_position - [0.0, 0.0, 2.0])
-    deep = dataclasses.replace(goal(robot, dynamics), sole_height=np.full(2, -2.0))
+    deep = dataclasses.replace(goal(robot, dynamics), ground=FootGround.level(2, -2.0))
     output = answer(robot, sunk, reference=deep)
     assert output.failure is not None
     assert output.failure.startswith("PlaCo finds no torques within the limits")

@@ -5,6 +5,7 @@ import pytest
 from momentum_lab.control.slack_qp import SlackQP
 from momentum_lab.experiments import fig9
 from momentum_lab.robot.state import State
+from tests.control.situations import LEVEL
 from tests.experiments.played import any_starts, claims, failing, failing_with, played
 
 
@@ -34,5 +35,7 @@ def test_slack_is_the_controllers_own() -> None:
     slack = fig9.com_slack(session)
     for tick in (50, 400, 1200):
         dynamics = session.robot.at(State(column("q")[tick], column("v")[tick]))
-        answer = controller.compute(dynamics, session._goal.reference(dynamics), session.gains, 0.0, None)
+        answer = controller.compute(
+            dynamics, session._goal.reference(dynamics, LEVEL), session.gains, 0.0, None
+        )
         assert slack[tick] == pytest.approx(answer.slack["com y"], abs=1e-6)

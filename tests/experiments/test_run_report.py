@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import csv
+import dataclasses
 import io
 import re
 from html.parser import HTMLParser
@@ -14,7 +15,7 @@ import pytest
 from PIL import Image
 
 from momentum_lab.errors import InputError
-from momentum_lab.events import LoggedEvent, SetGains
+from momentum_lab.events import LoggedEvent, SetFriction, SetGains
 from momentum_lab.experiments.run_plots import along, over_time, png
 from momentum_lab.experiments.run_report import checks, report
 from momentum_lab.experiments.run_table import header, table
@@ -95,17 +96,22 @@ def test_the_checks_hold_and_can_fail(run):
     for row in run.recording.rows():
         recording.next_row()[:] = row
     recording.rows()[7, recording.slices["foot_wrench_measured"].start + 2] = -50.0  # pulls
-    pulled = FinishedRun(
-        *(recording if name == "recording" else getattr(run, name) for name in run.__slots__)
-    )
+    pulled = dataclasses.replace(run, recording=recording)
     assert [claim.holds for claim in checks(pulled, worse)] == [False, False, False, False]
+
+
+def test_on_other_ground_the_vertical_is_no_normal_and_nothing_is_claimed_about_it(run):
+    summary = summarize(run, Timing(np.zeros(0), float("inf")))
+    moved = msgspec.structs.replace(run.run, events=(LoggedEvent(5, SetFriction(0.3)),))
+    texts = [claim.text for claim in checks(dataclasses.replace(run, run=moved), summary)]
+    assert len(texts) == 2
+    assert not any("Friction" in text for text in texts)
 
 
 def test_without_samples_there_is_no_report(run):
     empty = Recording(run.recording.layout, 1)
-    values = (empty if name == "recording" else getattr(run, name) for name in run.__slots__)
     with pytest.raises(InputError, match="a run of at least one tick"):
-        report(FinishedRun(*values))
+        report(dataclasses.replace(run, recording=empty))
 
 
 def test_the_same_run_gives_the_same_picture(run):

@@ -87,7 +87,7 @@ def problem_of(
     robot: RobotModel, dynamics: Dynamics, force: np.ndarray, friction: float, dt: float
 ) -> Problem:
     """The contact problem of a state under generalized forces (nv,) without contact."""
-    touches = SolePoints(robot, Ground.level(2, friction)).touches(dynamics)
+    touches = SolePoints(robot, Ground.level(2, friction), dt).touches(dynamics, 0.0)
     feet = np.repeat(touches.foot, 4)
     mass_matrix, impulse = with_joint_limits(robot, dynamics, dt * force, dt)
     return Problem(dynamics, mass_matrix, impulse, touches.contacts, feet, touches.position, dt)

@@ -22,7 +22,7 @@ SOLVER = 1e-4
 def point_mass(velocity: list[float], force: list[float], gap: float = 0.0, friction: float = MU):
     """A step of a point of 7 kg under gravity and a force."""
     weight = np.array(force) - [0.0, 0.0, MASS * G]
-    contacts = Contacts(np.eye(6, 3), np.eye(3, 6), np.array([gap]), np.array([friction]))
+    contacts = Contacts(np.eye(6, 3), np.eye(3, 6), np.array([gap]), np.array([friction]), np.zeros(6))
     return solve_contact(MASS * np.eye(3), DT * weight, np.array(velocity), contacts, DT)
 
 
@@ -88,7 +88,7 @@ def box(force: list[float], velocity: np.ndarray | None = None, friction: float 
     for x, y in ((-HALF, -HALF), (HALF, -HALF), (HALF, HALF), (-HALF, HALF)):
         arm = np.array([x, y, -HEIGHT])
         rows.append(np.hstack([np.eye(3), np.cross(np.eye(3), arm).T]))
-    contacts = Contacts(np.eye(6), np.vstack(rows), np.zeros(4), np.full(4, friction))
+    contacts = Contacts(np.eye(6), np.vstack(rows), np.zeros(4), np.full(4, friction), np.zeros(6))
     free = DT * np.array([*force, 0.0, 0.0, 0.0])
     free[2] -= DT * MASS * G
     return solve_contact(inertia, free, np.zeros(6) if velocity is None else velocity, contacts, DT)
@@ -120,7 +120,7 @@ def test_a_sliding_box_is_braked_by_mu_g():
 
 
 def test_no_contact_is_free_motion():
-    nothing = Contacts(np.zeros((0, 3)), np.zeros((0, 0)), np.zeros(0), np.zeros(0))
+    nothing = Contacts(np.zeros((0, 3)), np.zeros((0, 0)), np.zeros(0), np.zeros(0), np.zeros(0))
     step = solve_contact(MASS * np.eye(3), np.array([1.0, 2.0, 3.0]), np.ones(3), nothing, DT)
     assert_close(step.velocity, 1.0 + np.array([1.0, 2.0, 3.0]) / MASS, 1e-12)
     assert step.impulse.shape == (0, 3)
@@ -130,7 +130,7 @@ def test_no_contact_is_free_motion():
 def test_a_mass_matrix_that_is_none_is_said(number):
     mass_matrix = MASS * np.eye(3)
     mass_matrix[0, 0] = number
-    contacts = Contacts(np.eye(6, 3), np.eye(3, 6), np.zeros(1), np.array([MU]))
+    contacts = Contacts(np.eye(6, 3), np.eye(3, 6), np.zeros(1), np.array([MU]), np.zeros(6))
     with pytest.raises(SimulationError, match="mass matrix is not positive definite"):
         solve_contact(mass_matrix, np.zeros(3), np.zeros(3), contacts, DT)
 

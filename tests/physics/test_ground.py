@@ -23,3 +23,10 @@ def test_level_ground_measures_height():
     for plane in (*ground.under_feet, ground.floor):
         assert plane.friction == 0.6
         assert_close(plane.gap(np.array([[5.0, -3.0, 0.5], [0.0, 0.0, 0.1]])), [0.2, -0.2], 1e-15)
+
+
+def test_ground_at_rest_is_the_same_at_all_times():
+    ground = Ground.level(2, 0.6, height=0.3)
+    assert ground.at(0.0) is ground.at(7.0)
+    assert ground.at(0.0).height == 0.3
+    assert ground.friction(3.0).tolist() == [0.6, 0.6]

@@ -33,7 +33,7 @@ def test_corners_of_soles_and_their_velocities(robot, rng):
     state = near_the_ground(robot, rng)
     rotation = random_rotation(rng)
     patch = Patch(0.7, np.array([0.0, 0.0, 0.5]), rotation)
-    touches = SolePoints(robot, Ground((patch, patch), patch)).touches(robot.at(state))
+    touches = SolePoints(robot, Ground((patch, patch), patch), 1e-3).touches(robot.at(state), 0.0)
     assert touches.foot.tolist() == [0, 1]
     velocity = (touches.contacts.jacobian @ state.v).reshape(2, 4, 3)
     for foot, moving in enumerate(velocity):
@@ -50,7 +50,9 @@ def test_corners_of_soles_and_their_velocities(robot, rng):
 
 def test_a_foot_in_the_air_touches_nothing(robot):
     q = standing_posture(robot, robot.foot_names[:1])
-    touches = SolePoints(robot, Ground.level(2, 0.7)).touches(robot.at(State(q, np.zeros(robot.nv))))
+    touches = SolePoints(robot, Ground.level(2, 0.7), 1e-3).touches(
+        robot.at(State(q, np.zeros(robot.nv))), 0.0
+    )
     assert touches.foot.tolist() == [0]
     assert len(touches.position) == 4
 

@@ -11,6 +11,7 @@ import pinocchio as pin
 
 from momentum_lab.control.controller import Reference
 from momentum_lab.control.standing import StandingGoal
+from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.resolved import null_space
 from momentum_lab.robot.model import RobotModel
@@ -92,7 +93,7 @@ def standing(robot: RobotModel, seed: int, stance: tuple[int, ...] = (0, 1), spe
 def standing_goal(scene: Scene, stance: tuple[int, ...] = (0, 1)) -> Reference:
     """Standing in the home posture of a stance."""
     goal = StandingGoal(scene.robot, at_home(scene.robot, stance), stance)
-    return goal.reference(scene.dynamics)
+    return goal.reference(scene.dynamics, FootGround.level(len(scene.robot.soles)))
 
 
 @lru_cache(maxsize=4)
