@@ -41,7 +41,7 @@ def test_a_code_runs_again_and_says_whether_the_bits_agree(shared, tmp_path: Pat
     assert summary["impulse"] == pytest.approx(40.0 * 0.06)
     assert output.err == "momentum-lab: the same bits: the sample at 0.079 s\n"
     assert main(["replay", str(trace)]) == 0
-    assert "the same bits: 80 samples of 29 quantities" in capsys.readouterr().out
+    assert re.search(r"the same bits: 80 samples of \d+ quantities", capsys.readouterr().out)
 
 
 def test_options_change_a_coded_run(shared, capsys: Output) -> None:

@@ -23,7 +23,7 @@ def test_there_and_back(name):
     scenario = changed(load_scenario(name), gains={"linear_damping": 7.123456789012345}, priority=1 / 3)
     code = to_code(Run(scenario))
     assert from_code(code) == Run(scenario)
-    assert re.fullmatch(r"[A-Za-z0-9_-]{1,400}", code)
+    assert re.fullmatch(r"[A-Za-z0-9_-]{1,600}", code)
 
 
 def test_events_come_too():
