@@ -41,7 +41,7 @@ class ResponseSliders:
         )
         self._frequency: Bound[float] = Bound(
             gui.add_slider(
-                "frequency ω (rad∕s)",
+                "frequency ω (1∕s)",
                 *_FREQUENCIES,
                 0.05,
                 frequency,

@@ -90,9 +90,9 @@ def test_undo_and_redo_go_through_the_inbox(desk):
 
 
 def test_damping_ratio_and_frequency_set_the_gains(desk):
-    ratio, frequency = desk.gui.widgets["damping ratio ζ"], desk.gui.widgets["frequency ω (rad∕s)"]
+    ratio, frequency = desk.gui.widgets["damping ratio ζ"], desk.gui.widgets["frequency ω (1∕s)"]
     assert (ratio.value, frequency.value) == (1.0, 4.0)
-    desk.do("frequency ω (rad∕s)", 5.0)
+    desk.do("frequency ω (1∕s)", 5.0)
     assert desk.posted == [SetGains({"linear_damping": 10.0, "linear_stiffness": 25.0})]
     desk.do("damping ratio ζ", 0.5)
     assert desk.posted[-1] == SetGains({"linear_damping": 5.0, "linear_stiffness": 25.0})
