@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+
 import msgspec
 import numpy as np
 import pinocchio as pin
 import pytest
 
+from momentum_lab.cli import main
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import InputError, RobotError, ScenarioError
 from momentum_lab.events import MoveGround, SetFriction, SetGroundSense, StopGround
@@ -257,6 +260,21 @@ def test_plates_under_no_foot_or_two_are_refused(g1, ground, named):
 def test_bad_plates_are_named(ground, named):
     with pytest.raises(ScenarioError, match=named):
         changed(Scenario("bad"), ground=ground)
+
+
+def test_the_command_line_chooses_sense_and_friction(capsys):
+    bus = ["run", "bus", "--robot", "g1", "--seconds", "2.5", "--json"]
+    assert main([*bus, "--ground-sense", "felt", "--friction", "0.6"]) == 0
+    felt = json.loads(capsys.readouterr().out)
+    assert main(bus) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert not felt["fell"]
+    assert felt["peak_com_excursion"] != told["peak_com_excursion"]
+    for words, named in ((["--ground-sense", "seen"], "told, felt"), (["--friction", "0"], "--friction")):
+        assert main(["run", "bus", *words]) == 2
+        line = capsys.readouterr().err
+        assert named in line
+        assert line.count("\n") == 1
 
 
 def test_events_for_feet_and_grounds_that_do_not_exist_are_refused(g1):

@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 from momentum_lab import __version__
 from momentum_lab.errors import InputError
 from momentum_lab.momentum.directions import directions
+from momentum_lab.physics.plate import MAX_FRICTION
 from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
 from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 
@@ -282,6 +283,15 @@ def _choice_arguments(parser: _Parser) -> None:
     parser.add_argument("--motion", metavar="M", help="what the robot does meanwhile: kick, arm-swing")
     parser.add_argument(
         "--angular-goal", metavar="G", help="angular momentum asked for: zero, or reference, the motion's own"
+    )
+    parser.add_argument(
+        "--ground-sense", metavar="S", help="how the robot knows a moving ground: told, or felt by its soles"
+    )
+    parser.add_argument(
+        "--friction",
+        metavar="x",
+        type=number("--friction", _ABOVE_ZERO, MAX_FRICTION, "Coulomb coefficient of the floor"),
+        help="Coulomb coefficient of the floor",
     )
     parser.add_argument("--code", metavar="CODE", help="a shared run instead of a scenario")
     parser.add_argument(

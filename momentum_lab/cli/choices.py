@@ -24,6 +24,8 @@ _FIELDS = (
     "planner",
     "motion",
     "angular_goal",
+    "ground_sense",
+    "friction",
     "priority",
     "seconds",
     "engine",

@@ -17,6 +17,7 @@ from momentum_lab.experiments.canvas import (
     SPIN,
     band,
     canvas,
+    cut_spikes,
     finish,
     heading,
 )
@@ -47,6 +48,8 @@ def over_time(run: FinishedRun) -> Any:
     axes[3, 0].plot(
         column("time"), momentum[:, 3:] @ angular, color=SPIN, label="angular, about the axis across"
     )
+    for row in axes[1:3, 0]:
+        cut_spikes(row)
     for row in axes[1:, 0]:
         band(row, run)
     finish(axes[1, 0], "Rate of linear momentum along the push", "", "N")

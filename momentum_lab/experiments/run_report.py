@@ -30,7 +30,7 @@ _MOST_EVENTS = 200
 _CONE = 1e-6
 _LIMITS = (
     "The robot is a chain of rigid bodies with ideal motors: no elasticity, no delay, no noise, full knowledge of "
-    "the state. Contacts are rigid, with Coulomb friction under flat soles. It never steps.",
+    "the state. Contacts are rigid, with Coulomb friction under flat soles. It never takes a step.",
     "A fall is a CoM below 0.6 of its height or a touch by anything but a sole; what happens afterwards is not "
     "a prediction.",
     "Numbers are of this one run. They say nothing about other pushes, robots or gains.",
@@ -125,7 +125,11 @@ def _result(summary: Summary) -> str:
 
 
 def _numbers(summary: Summary) -> list[tuple[str, ...]]:
-    margin = "never supported" if summary.min_cop_margin is None else f"{1e3 * summary.min_cop_margin:.1f} mm"
+    margin = (
+        "never supported"
+        if summary.min_cop_margin is None
+        else f"{round(1e3 * summary.min_cop_margin, 1) + 0.0:g} mm"
+    )
     return [
         ("impulse of all pushes", f"{summary.impulse:.2f} N s"),
         ("largest push against what a CoP alone can catch", f"{summary.impulse_ratio:.2f}"),
