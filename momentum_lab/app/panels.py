@@ -63,7 +63,6 @@ class Panels:
         self.status = StatusBar(gui, post)
         gui.add_html(share_html.HIDDEN_NEXT)
         address = gui.add_text("address", "")
-        gui.add_html(share_html.READ_ADDRESS)
         group = gui.add_tab_group()
         with group.add_tab("Push", viser.Icon.HAND_MOVE):
             self.push = PushPanel(gui, post, tell, redraw)
@@ -75,6 +74,7 @@ class Panels:
             ViewPanel(gui, self.settings, look, redraw)
         with group.add_tab("Share", viser.Icon.SHARE):
             self.share = SharePanel(gui, sharing, address)
+        gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         plots = gui.add_panel()
         with plots.add_tab("Plots", viser.Icon.CHART_LINE):
             gui.add_html(

@@ -12,10 +12,13 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Download, expect
 
+from momentum_lab.events import ApplyPush, LoggedEvent, SetGains
+from momentum_lab.physics.push import Push
 from momentum_lab.recording import load_trace
 from momentum_lab.replay import replayed, trace_agreement
-from momentum_lab.run_file import read_run, run_of_trace
-from momentum_lab.share_code import from_code
+from momentum_lab.run_file import Run, read_run, run_of, run_of_trace
+from momentum_lab.scenario import Scenario
+from momentum_lab.share_code import from_code, link, to_code
 from tests.browser.conftest import OUTPUT, Opener, Served
 from tests.browser.lab_page import PATIENCE, LabPage
 
@@ -92,24 +95,20 @@ def test_files_and_codes_hold_the_run(served: Served, open_page: Opener, tmp_pat
 
 
 def test_an_address_opens_the_run(served: Served, open_page: Opener) -> None:
-    first = open_page(served.url).until_furnished()
-    first.press("p")
-    first.expect_text("Last push")
-    first.page.wait_for_timeout(800)
-    first.press("k")
-    first.expect_text("paused")
-    open_tab(first, "4", "Share")
-    code = code_of(first)
-    address = first.page.get_by_label("address to copy").input_value()
-    assert address == f"{served.url}/?run={code}"
-    simulated = first.settled_text("simulated time")
-    first.page.close()
-
-    second = open_page(address).until_furnished()
-    second.expect_text("The opened run ends here, with the same bits")
-    assert second.settled_text("simulated time") == simulated
-    second.expect_text("Last push|opened run")
-    second.save(OUTPUT / "opened.png")
+    """A run of a second, played here: the page plays it too, stops where it ends, and hands on the same run."""
+    events = (
+        LoggedEvent(50, SetGains({"linear_damping": 11.0})),
+        LoggedEvent(200, ApplyPush(Push(force=150.0))),
+    )
+    run = run_of(replayed(Run(Scenario("theirs"), events, ticks=1000))[0])
+    lab = open_page(link(served.url, to_code(run))).until_furnished()
+    lab.expect_text("The opened run ends here, with the same bits")
+    lab.expect_text("simulated time 1.00 s · paused")
+    lab.expect_com_travel(0.5)
+    lab.save(OUTPUT / "opened.png")
+    open_tab(lab, "4", "Share")
+    assert from_code(code_of(lab)) == run
+    lab.expect_text("Its last sample has the same bits as the original")
 
 
 def test_what_is_no_run_is_told_and_nothing_is_lost(
