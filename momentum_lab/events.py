@@ -22,6 +22,12 @@ class SetGain(msgspec.Struct, frozen=True, tag=True):
     value: float
 
 
+class SetGains(msgspec.Struct, frozen=True, tag=True):
+    """Change several gains of the current controller in the same tick: a preset, a step back or forth."""
+
+    values: dict[str, float]
+
+
 class SetPriority(msgspec.Struct, frozen=True, tag=True):
     """Change which momentum is kept: 0 linear, 1 angular."""
 
@@ -91,6 +97,12 @@ class ApplyPush(msgspec.Struct, frozen=True, tag=True):
     push: Push
 
 
+class ApplyPushes(msgspec.Struct, frozen=True, tag=True):
+    """Push the robot several times; each push's start counts from now, s."""
+
+    pushes: tuple[Push, ...]
+
+
 class Reset(msgspec.Struct, frozen=True, tag=True):
     """Stand the robot up again where it started and set the clock to zero.
 
@@ -158,6 +170,7 @@ class Foresee(msgspec.Struct, frozen=True, tag=True):
 
 SessionEvent = (
     SetGain
+    | SetGains
     | SetPriority
     | SetDirections
     | SelectPlanner
@@ -169,6 +182,7 @@ SessionEvent = (
     | SetGroundSense
     | SelectController
     | ApplyPush
+    | ApplyPushes
     | Reset
 )
 PlaybackEvent = (

@@ -19,6 +19,7 @@ from momentum_lab.events import (
     SetAngularGoal,
     SetDirections,
     SetGain,
+    SetGains,
     SetGroundSense,
     SetMotion,
     SetPriority,
@@ -104,6 +105,8 @@ def chosen_of(session: Session, waiting: Iterable[SessionEvent]) -> Chosen:
                 sense = told_or_felt
             case SetGain(name, value):
                 gains[name] = value
+            case SetGains(values):
+                gains.update(values)
             case SelectController(name):
                 controller, gains = name, values_of(controller_entry(name).gains)
                 planner = planner if planner in controller_entry(name).planners else OWN

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import viser
 
-from momentum_lab.app import html
+from momentum_lab.app import html, share_html
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.ground_panel import GroundPanel
 from momentum_lab.app.keys import add_keys
@@ -14,6 +14,8 @@ from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.runs_panel import RunsPanel
+from momentum_lab.app.sequence_panel import SequencePanel
+from momentum_lab.app.share_panel import SharePanel, Sharing
 from momentum_lab.app.status_bar import StatusBar
 from momentum_lab.app.tabs import Tabs
 from momentum_lab.app.view_panel import ViewPanel, ViewSettings
@@ -36,6 +38,7 @@ class Panels:
         redraw: asks for a new picture.
         choices: robots and scenarios to choose from.
         truth: what is the case at the start.
+        sharing: what the share tab can ask for.
         feet: names of the robot's feet.
     """
 
@@ -48,6 +51,7 @@ class Panels:
         redraw: Callable[[], None],
         choices: Choices,
         truth: Truth,
+        sharing: Sharing,
         feet: tuple[str, ...],
     ) -> None:
         gui = client.gui
@@ -58,16 +62,22 @@ class Panels:
         roomy = client.camera.image_width >= _ROOMY * client.camera.image_height
         self.settings = ViewSettings(labelled=ALL_LABELS if roomy else FEW_LABELS)
         self.status = StatusBar(gui, post)
+        gui.add_html(share_html.HIDDEN_NEXT)
+        address = gui.add_text("address", "")
         group = gui.add_tab_group()
         with group.add_tab("Push", viser.Icon.HAND_MOVE):
             self.push = PushPanel(gui, post, tell, redraw)
+            SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
             self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control", viser.Icon.ADJUSTMENTS):
-            self.control = ControlPanel(gui, post, choices, truth)
+            self.control = ControlPanel(gui, post, tell, choices, truth)
         with group.add_tab("View", viser.Icon.EYE):
             ViewPanel(gui, self.settings, look, redraw)
         with group.add_tab("Runs", viser.Icon.VERSIONS):
             self.runs = RunsPanel(gui, post, redraw, truth)
+        with group.add_tab("Share", viser.Icon.SHARE):
+            self.share = SharePanel(gui, sharing, address)
+        gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         plots = gui.add_panel()
         with plots.add_tab("Plots", viser.Icon.CHART_LINE):
             gui.add_html(

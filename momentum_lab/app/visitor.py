@@ -21,12 +21,14 @@ from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.profile import RenderProfile
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot, RobotShelf
+from momentum_lab.app.share_panel import Sharing
+from momentum_lab.app.snapshot import view_of
 from momentum_lab.app.wire import Frame, Truth, rows_of
 from momentum_lab.app.world import add_floor, add_world
 from momentum_lab.errors import InputError
 from momentum_lab.events import Event
 from momentum_lab.recording import Sample
-from momentum_lab.scenario import Scenario
+from momentum_lab.run_file import Run
 from momentum_lab.session import Fall
 from momentum_lab.status import status_of
 
@@ -58,22 +60,25 @@ class Visitor:
     Args:
         client: the browser tab.
         shelf: loaded robots.
-        scenario: what the session starts with.
+        first: what the session starts with.
         choices: what can be chosen.
         profile: how much to draw.
+        url: where the lab is served.
     """
 
     def __init__(
         self,
         client: viser.ClientHandle,
         shelf: RobotShelf,
-        scenario: Scenario,
+        first: Run,
         choices: Choices,
         profile: RenderProfile,
+        url: str,
     ) -> None:
+        self._url = url
         self._client, self._shelf, self._profile = client, shelf, profile
         self._choices = choices
-        self._link = Link(scenario, choices.robots, choices.scenarios)
+        self._link = Link(first, choices.robots, choices.scenarios)
         self._stage: Stage | None = None
         self._panels: Panels | None = None
         self._comparison = Comparison(client)
@@ -167,11 +172,29 @@ class Visitor:
 
     def _furnish(self, truth: Truth, feet: tuple[str, ...]) -> Panels:
         self._panels = Panels(
-            self._client, self.post, self.tell, self._look, self._link.want_frame, self._choices, truth, feet
+            self._client,
+            self.post,
+            self.tell,
+            self._look,
+            self._link.want_frame,
+            self._choices,
+            truth,
+            self._sharing(),
+            feet,
         )
         if self._stage is not None:
             self._receive(self._panels, self._stage)
         return self._panels
+
+    def _sharing(self) -> Sharing:
+        return Sharing(
+            self._link.take_run,
+            self._link.open,
+            self.tell,
+            lambda name, content: self._client.send_file_download(name, content, save_immediately=True),
+            lambda: view_of(self._client),
+            self._url,
+        )
 
     def _receive(self, panels: Panels, stage: Stage) -> None:
         """Fit the panels to the robot on stage."""
@@ -206,6 +229,7 @@ class Visitor:
         status = status_of(sample, loaded.model, fall, truth.failure, truth.stopped)
         panels.status.follow(truth, status, sample.number("time"))
         panels.control.follow(truth)
+        panels.share.follow(truth)
         panels.ground.follow(truth)
         panels.control.see(sample)
         if truth.fall is None:
