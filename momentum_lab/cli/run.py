@@ -6,13 +6,12 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 from rich.console import Console
 from rich.table import Table
 
-from momentum_lab.cli.beside import Second
 from momentum_lab.cli.choices import chosen_run
 from momentum_lab.cli.progress import interruptible, progress
 from momentum_lab.errors import InputError, SimulationError
@@ -24,7 +23,10 @@ from momentum_lab.run_file import Run
 from momentum_lab.session import Session
 from momentum_lab.summary import Summary, summarize
 
-Made = TypeVar("Made", Session, Second)
+if TYPE_CHECKING:
+    from momentum_lab.cli.beside import Second
+
+Made = TypeVar("Made")
 
 
 def run(args: Namespace) -> int:
@@ -42,7 +44,7 @@ def run(args: Namespace) -> int:
     """
     chosen = chosen_run(args)
     out = None if args.out is None else writable_file(Path(args.out))
-    second = None if chosen.scenario.beside is None else _fitting(chosen, Second)
+    second = None if chosen.scenario.beside is None else _fitting(chosen, _second)
     session, timing, stopped = played(chosen)
     if out is not None:
         save_trace(session.recording, provenance(session), out)
@@ -97,6 +99,12 @@ def show(summary: Summary, out: Path | None) -> None:
     Console(markup=False).print(table)
     if out is not None:
         print(f"trace: {out}")
+
+
+def _second(chosen: Run) -> Second:
+    from momentum_lab.cli.beside import Second  # loads a part of the app, which one robot does not need
+
+    return Second(chosen)
 
 
 def _beside(second: Second, chosen: Run, out: Path | None) -> Summary:
