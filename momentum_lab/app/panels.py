@@ -64,18 +64,18 @@ class Panels:
         self.status = StatusBar(gui, post)
         gui.add_html(share_html.HIDDEN_NEXT)
         address = gui.add_text("address", "")
-        group = gui.add_tab_group()
-        with group.add_tab("Push", viser.Icon.HAND_MOVE):
+        group = gui.add_tab_group()  # five of them fit into one line without icons
+        with group.add_tab("Push"):
             self.push = PushPanel(gui, post, tell, redraw)
             SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
             self.ground = GroundPanel(gui, post, tell, feet)
-        with group.add_tab("Control", viser.Icon.ADJUSTMENTS):
+        with group.add_tab("Control"):
             self.control = ControlPanel(gui, post, tell, choices, truth)
-        with group.add_tab("View", viser.Icon.EYE):
+        with group.add_tab("View"):
             ViewPanel(gui, self.settings, look, redraw)
-        with group.add_tab("Runs", viser.Icon.VERSIONS):
+        with group.add_tab("Runs"):
             self.runs = RunsPanel(gui, post, redraw, truth)
-        with group.add_tab("Share", viser.Icon.SHARE):
+        with group.add_tab("Share"):
             self.share = SharePanel(gui, sharing, address)
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         plots = gui.add_panel()
