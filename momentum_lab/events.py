@@ -22,6 +22,12 @@ class SetGain(msgspec.Struct, frozen=True, tag=True):
     value: float
 
 
+class SetGains(msgspec.Struct, frozen=True, tag=True):
+    """Change several gains of the current controller in the same tick: a preset, a step back or forth."""
+
+    values: dict[str, float]
+
+
 class SetPriority(msgspec.Struct, frozen=True, tag=True):
     """Change which momentum is kept: 0 linear, 1 angular."""
 
@@ -98,6 +104,12 @@ class ApplyPush(msgspec.Struct, frozen=True, tag=True):
     push: Push
 
 
+class ApplyPushes(msgspec.Struct, frozen=True, tag=True):
+    """Push the robot several times; each push's start counts from now, s."""
+
+    pushes: tuple[Push, ...]
+
+
 class Reset(msgspec.Struct, frozen=True, tag=True):
     """Stand the robot up again where it started and set the clock to zero.
 
@@ -165,6 +177,7 @@ class Foresee(msgspec.Struct, frozen=True, tag=True):
 
 SessionEvent = (
     SetGain
+    | SetGains
     | SetPriority
     | SetDirections
     | SelectPlanner
@@ -177,6 +190,7 @@ SessionEvent = (
     | SetMismatch
     | SelectController
     | ApplyPush
+    | ApplyPushes
     | Reset
 )
 PlaybackEvent = (

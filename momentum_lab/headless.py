@@ -27,11 +27,21 @@ class Timing:
     error: str | None = None
 
 
-def _always(_fraction: float) -> bool:
+def always(_fraction: float) -> bool:
+    """Go on to the end."""
     return True
 
 
-def run_headless(session: Session, proceed: Callable[[float], bool] = _always) -> Timing:
+def _nothing(_session: Session) -> None:
+    return None
+
+
+def run_headless(
+    session: Session,
+    proceed: Callable[[float], bool] = always,
+    cue: Callable[[Session], None] = _nothing,
+    ticks: int | None = None,
+) -> Timing:
     """Run a session to the end of its scenario.
 
     A simulation that breaks down ends the run; the recording holds everything before, and `Timing.error` says
@@ -40,16 +50,19 @@ def run_headless(session: Session, proceed: Callable[[float], bool] = _always) -
     Args:
         session: a session at the start of its scenario.
         proceed: asked before every tick with the fraction of the run that is done; False ends the run there.
+        cue: called before every tick; it posts what is to be done there.
+        ticks: how long to run; None: as long as the scenario.
 
     Returns:
         The timing; what happened is in the session.
     """
-    ticks = session.scenario_ticks
+    ticks = session.scenario_ticks if ticks is None else ticks
     tick_time = np.zeros(ticks)
     done, error = 0, None
     start = perf_counter()
     try:
         while done < ticks and proceed(done / ticks):
+            cue(session)
             before = perf_counter()
             session.tick()
             tick_time[done] = perf_counter() - before

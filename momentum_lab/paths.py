@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
@@ -15,3 +16,9 @@ def _shipped(name: str) -> Path:
 
 ASSETS = _shipped("assets")
 LESSONS = _shipped("lessons")
+
+
+def config_folder() -> Path:
+    """Where a person's own settings live: $XDG_CONFIG_HOME/momentum_lab, or ~/.config/momentum_lab."""
+    base = os.environ.get("XDG_CONFIG_HOME")
+    return (Path(base) if base else Path.home() / ".config") / "momentum_lab"

@@ -8,16 +8,18 @@ from typing import Any
 import msgspec
 
 from momentum_lab import __version__
+from momentum_lab.finished import FinishedRun
 from momentum_lab.physics.engines import Engine
 from momentum_lab.session import Session
 
 _LIBRARIES = ("pin", "numpy", "placo", "daqp", "scipy", "example-robot-data")
 
 
-def provenance(session: Session) -> dict[str, Any]:
+def provenance(session: Session | FinishedRun) -> dict[str, Any]:
     """What the meta entry of a trace says, as plain data that goes to JSON.
 
-    Versions; the scenario as it was run; controller, gains, priority and mismatch as they are now; the log of events;
+    Versions; the scenario as it was run; controller, gains, priority and mismatch as they are now; how many ticks it
+    has lasted, and the log of events;
     and the robot: its URDF as a path relative to the folder `robots` of the example-robot-data distribution
     (absolute if it lies elsewhere), mass (kg), and for each foot its sole frame and rectangle (m).
     """
@@ -30,6 +32,7 @@ def provenance(session: Session) -> dict[str, Any]:
         "priority": session.priority,
         "mismatch": msgspec.to_builtins(session.mismatch),
         "seed": session.scenario.seed,
+        "ticks": session.ticks,
         "events": msgspec.to_builtins(session.log),
         "urdf": robot.spec.urdf,
         "robot": {

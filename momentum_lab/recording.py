@@ -7,7 +7,7 @@ import math
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 from uuid import uuid4
 from zipfile import BadZipFile
 
@@ -245,21 +245,47 @@ def save_trace(recording: Recording, meta: dict[str, Any], path: Path) -> None:
         temporary.unlink(missing_ok=True)
 
 
-def load_trace(path: Path) -> Trace:
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file, whole or not at all.
+
+    Raises:
+        InputError: it cannot be written there.
+    """
+    temporary = _beside(writable_file(path))
+    try:
+        temporary.write_bytes(content)
+        temporary.replace(path.resolve())
+    except OSError as error:
+        raise _not_writable(path, error) from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def load_trace(path: Path | BinaryIO, name: str = "") -> Trace:
     """Read what `save_trace` has written.
+
+    Args:
+        path: where it is, or its content.
+        name: of the file, when its content is given.
 
     Raises:
         InputError: the file is not a recording.
     """
     try:
-        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
+        with _opened(path) as raw, np.load(raw, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
         joint_names, foot_names = arrays.pop("joint_names"), arrays.pop("foot_names")
         arrays.pop("slack_names", None)
         meta = json.loads(str(arrays.pop("meta")))
     except (OSError, KeyError, ValueError, TypeError, EOFError, BadZipFile, zlib.error) as error:
-        raise InputError("recording", path, f"a .npz file that this lab has written ({error})") from error
+        raise InputError(
+            "recording", name or path, f"a .npz file that this lab has written ({error})"
+        ) from error
     return Trace(arrays, tuple(joint_names.tolist()), tuple(foot_names.tolist()), meta)
+
+
+def _opened(path: Path | BinaryIO) -> BinaryIO:
+    return path.open("rb") if isinstance(path, Path) else path
 
 
 def _beside(path: Path) -> Path:

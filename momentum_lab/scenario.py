@@ -137,7 +137,7 @@ def load_scenario(name: str) -> Scenario:
         raise ScenarioError("scenario", name, allowed) from error
     except (ValueError, RecursionError) as error:
         raise ScenarioError("scenario", path, f"a TOML file that describes a scenario ({error})") from error
-    return _converted(data, f" in {path}")
+    return scenario_from(data, f" in {path}")
 
 
 def changed(scenario: Scenario, **changes: Any) -> Scenario:
@@ -146,7 +146,7 @@ def changed(scenario: Scenario, **changes: Any) -> Scenario:
     Raises:
         ScenarioError: a value is not allowed; the message names the field.
     """
-    return _converted({**msgspec.to_builtins(scenario), **msgspec.to_builtins(changes)})
+    return scenario_from({**msgspec.to_builtins(scenario), **msgspec.to_builtins(changes)})
 
 
 def sides(scenario: Scenario) -> tuple[Scenario, ...]:
@@ -170,15 +170,23 @@ def checked(scenario: Scenario) -> Scenario:
     """The scenario, if every number in it is finite.
 
     Raises:
-        ScenarioError: one is not (comparisons with NaN let it pass every range).
+        ScenarioError: one is not.
     """
-    _check_finite(msgspec.to_builtins(scenario))
+    check_finite(msgspec.to_builtins(scenario))
     return scenario
 
 
-def _converted(data: dict[str, Any], where: str = "") -> Scenario:
-    """Plain data as a scenario, or an error that names the field and `where` it is."""
-    _check_finite(data, where)
+def scenario_from(data: dict[str, Any], where: str = "") -> Scenario:
+    """Plain data as a scenario.
+
+    Args:
+        data: what a file or a code holds.
+        where: what is said of the place of a mistake.
+
+    Raises:
+        ScenarioError: it is no scenario; the message names the field and the place.
+    """
+    check_finite(data, where)
     try:
         scenario = msgspec.convert(data, Scenario)
     except msgspec.ValidationError as error:
@@ -227,7 +235,12 @@ def _explained(rule: str, field: str, data: Any) -> tuple[object, str]:
     return given, allowed
 
 
-def _check_finite(data: Any, where: str = "") -> None:
+def check_finite(data: Any, where: str = "") -> None:
+    """Refuse plain data with a number in it that is not finite: comparisons with NaN let it pass every range.
+
+    Raises:
+        ScenarioError: there is one.
+    """
     for field, value in _numbers(data):
         if not math.isfinite(value):
             raise ScenarioError(field + where, value, "a finite number")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -23,6 +24,7 @@ from momentum_lab.control.standing import StandingGoal
 from momentum_lab.errors import InputError, ScenarioError, SimulationError
 from momentum_lab.events import (
     ApplyPush,
+    ApplyPushes,
     LoggedEvent,
     MoveGround,
     Reset,
@@ -33,6 +35,7 @@ from momentum_lab.events import (
     SetDirections,
     SetFriction,
     SetGain,
+    SetGains,
     SetGroundSense,
     SetMismatch,
     SetMotion,
@@ -135,7 +138,7 @@ class Session:
     ) -> None:
         self.scenario = scenario
         self.robot = robot or RobotModel.named(scenario.robot)
-        self.stance = _stance(self.robot, scenario.stance)
+        self.stance = stance_of(self.robot, scenario.stance)
         self._weight = self.robot.mass * GRAVITY
         self._ground = self._first_ground = terrain(scenario, self.robot, self.stance)
         self._start = _lifted(
@@ -199,6 +202,19 @@ class Session:
         """
         self._check(event)
         self._inbox.append(event)
+
+    def check(self, events: Iterable[SessionEvent]) -> None:
+        """Refuse events that could not be done one after the other; none of them is done.
+
+        Raises:
+            InputError: one asks for something that does not exist or is out of range.
+        """
+        waiting = tuple(self._inbox)
+        try:
+            for event in events:
+                self.post(event)
+        finally:
+            self._inbox = deque(waiting)
 
     def tick(self) -> Sample:
         """One step of control and physics.
@@ -324,6 +340,8 @@ class Session:
         match event:
             case SetGain(name, value):
                 with_gains(controller_entry(self._controller_to_be()).gains, {name: value})
+            case SetGains(values):
+                with_gains(controller_entry(self._controller_to_be()).gains, values)
             case SetPriority(value):
                 _checked_priority(value)
             case SetDirections(text):
@@ -346,6 +364,9 @@ class Session:
                 controller_entry(name)
             case ApplyPush(push):
                 self._checked_push(push)
+            case ApplyPushes(pushes):
+                for push in pushes:
+                    self._checked_push(push)
 
     def _controller_to_be(self) -> str:
         """The controller after everything in the inbox has been done."""
@@ -356,6 +377,8 @@ class Session:
         match event:
             case SetGain(name, value):
                 self.gains = with_gains(self.gains, {name: value})
+            case SetGains(values):
+                self.gains = with_gains(self.gains, values)
             case SetPriority(value):
                 self.priority = _checked_priority(value)
             case SetDirections(text):
@@ -386,11 +409,18 @@ class Session:
                 self.mismatch = with_error(self.mismatch, name, value)
                 self._build()
             case ApplyPush(push):
-                now = msgspec.structs.replace(self._checked_push(push), start=self.time)
-                self.pushes = (*self.pushes, now)
+                self._push(msgspec.structs.replace(push, start=0.0))
+            case ApplyPushes(pushes):
+                for push in pushes:
+                    self._push(push)
             case Reset():
                 self._scripted = ()
                 self._stand_up()
+
+    def _push(self, push: Push) -> None:
+        """Let a push begin so long after now as its start says."""
+        sized = self._checked_push(push)
+        self.pushes = (*self.pushes, msgspec.structs.replace(sized, start=self.time + sized.start))
 
     def _feet_named(self, name: str) -> tuple[int, ...]:
         """The feet of that name; all for an empty one."""
@@ -450,7 +480,12 @@ def _checked_priority(value: float) -> float:
     return float(value)
 
 
-def _stance(robot: RobotModel, names: tuple[str, ...]) -> tuple[int, ...]:
+def stance_of(robot: RobotModel, names: tuple[str, ...]) -> tuple[int, ...]:
+    """Indices of the feet with these names; of all feet without any.
+
+    Raises:
+        ScenarioError: the robot has no such foot.
+    """
     for name in names:
         if name not in robot.foot_names:
             raise ScenarioError("stance", name, f"feet among {', '.join(robot.foot_names)}")

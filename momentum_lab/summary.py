@@ -7,6 +7,7 @@ import math
 import msgspec
 import numpy as np
 
+from momentum_lab.finished import FinishedRun, com_speed
 from momentum_lab.headless import Timing
 from momentum_lab.momentum.pendulum import pendulum_frequency, pendulum_impulse_bound
 from momentum_lab.momentum.support import distance_to_edge, support_margin, support_polygon
@@ -78,7 +79,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     beside: Summary | None = None
 
 
-def summarize(session: Session, timing: Timing) -> Summary:
+def summarize(session: Session | FinishedRun, timing: Timing) -> Summary:
     """The summary of a session that has run.
 
     Args:
@@ -115,7 +116,7 @@ def summarize(session: Session, timing: Timing) -> Summary:
     )
 
 
-def _fall(session: Session, timing: Timing) -> tuple[bool, float | None, str | None]:
+def _fall(session: Session | FinishedRun, timing: Timing) -> tuple[bool, float | None, str | None]:
     if session.fall is not None:
         return True, session.fall.time, session.fall.reason
     if timing.error is not None:
@@ -123,14 +124,12 @@ def _fall(session: Session, timing: Timing) -> tuple[bool, float | None, str | N
     return False, None, None
 
 
-def _com_speed(session: Session) -> float:
+def _com_speed(session: Session | FinishedRun) -> float:
     """Speed of the CoM against the ground under the feet at the last sample, m/s."""
-    ground = session.ground.at(session.recording.latest.number("time"))
-    moving = ground.velocity[list(session.stance), :3].mean(axis=0)
-    return float(np.linalg.norm(session.recording.latest["com_velocity"] - moving))
+    return session.com_speed if isinstance(session, FinishedRun) else com_speed(session)
 
 
-def _impulse_ratio(session: Session, push: Push) -> float:
+def _impulse_ratio(session: Session | FinishedRun, push: Push) -> float:
     """J over m omega delta * omega T / (1 - exp(-omega T)), delta and omega from the state at the push.
 
     Zero for a push that the recording does not hold or that did not meet a standing robot.
@@ -149,14 +148,14 @@ def _impulse_ratio(session: Session, push: Push) -> float:
     return push.delivered(session.time) / bound if bound > 0.0 else 0.0
 
 
-def _peak_com_excursion(session: Session) -> float:
+def _peak_com_excursion(session: Session | FinishedRun) -> float:
     """How far the CoM gets from where it was over the ground, which may move, m."""
     ground = session.recording.column("ground_pose")[:, list(session.stance), :2].mean(axis=1)
     com = session.recording.column("com")[:, :2] - (ground - ground[0])
     return _largest(np.linalg.norm(com - com[0], axis=1))
 
 
-def _min_cop_margin(session: Session, until: float) -> float | None:
+def _min_cop_margin(session: Session | FinishedRun, until: float) -> float | None:
     """Smallest margin of the measured CoP in the hull of the soles that carry more than 1 N, m."""
     recording = session.recording
     standing = recording.column("time") < until
@@ -171,7 +170,7 @@ def _min_cop_margin(session: Session, until: float) -> float | None:
     return min(margins, default=None)
 
 
-def corners_in_world(session: Session, poses: np.ndarray) -> np.ndarray:
+def corners_in_world(session: Session | FinishedRun, poses: np.ndarray) -> np.ndarray:
     """Corners of the soles (..., F, 4, 3) at sole poses (..., F, 7), m.
 
     x = p + 2 w (u x c) + 2 u x (u x c) + c for a corner c and the quaternion (u, w).

@@ -35,6 +35,7 @@ from momentum_lab.physics.mismatch import Mismatch
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import load_trace
 from momentum_lab.robot.catalog import robot_names
+from momentum_lab.run_file import Run
 from momentum_lab.scenario import Scenario, load_scenario, scenario_names
 from momentum_lab.session import Session
 from tests.app.test_figures import measurement
@@ -150,15 +151,19 @@ BAD_VALUES = [
     ("app --port http", "--port: got http; allowed: a whole number from 0 to 65535"),
     ("--port -1", "--port: got -1; allowed: a whole number from 0 to 65535"),
     ("bench --seconds 0", "--seconds: got 0; allowed: a number from 1 to 600 (s)"),
-    ("list", "list: got nothing; allowed: robots, controllers, planners, scenarios, lessons, figures, gains"),
+    (
+        "list",
+        "list: got nothing; allowed: robots, controllers, planners, scenarios, lessons, figures, gains, presets",
+    ),
     (
         "list cats",
-        "list: got cats; allowed: robots, controllers, planners, scenarios, lessons, figures, gains",
+        "list: got cats; allowed: robots, controllers, planners, scenarios, lessons, figures, gains, presets",
     ),
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
     (
         "fly",
-        "command: got fly; allowed: app, run, limit, lesson, figure, list, equations, robot-check, bench",
+        "command: got fly; allowed: app, run, limit, report, replay, lesson, figure, list, equations, "
+        "robot-check, bench",
     ),
 ]
 
@@ -410,10 +415,10 @@ def test_ctrl_c_saves_what_there_is(tmp_path: Path, capsys: Output, monkeypatch:
 
 
 def test_recording_larger_than_memory_is_one_line(capsys: Output, monkeypatch: pytest.MonkeyPatch) -> None:
-    def greedy(_scenario: Scenario) -> None:
+    def greedy(_run: Run) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(run_command, "Session", greedy)
+    monkeypatch.setattr(run_command, "prepared", greedy)
     message = refusal(capsys, "run", "stand", "--seconds", "3600")
     assert message == "--seconds: got 3600.0; allowed: a run whose recording fits into memory"
 
@@ -583,7 +588,12 @@ def served(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
 @pytest.mark.parametrize("words", [[], ["app"]])
 def test_without_arguments_the_app_is_served_on_this_machine(words: list[str], served: list[Any]) -> None:
     assert main(words) == 0
-    expected = {"scenario": load_scenario("stand"), "host": "127.0.0.1", "port": 8080, "open_browser": True}
+    expected = {
+        "scenario": Run(load_scenario("stand")),
+        "host": "127.0.0.1",
+        "port": 8080,
+        "open_browser": True,
+    }
     assert served == [expected]
 
 
@@ -602,7 +612,7 @@ def test_options_of_the_app_reach_it(served: list[Any]) -> None:
     assert main(words) == main(["app", *words]) == 0
     first, second = served
     assert first == second
-    assert (first["scenario"].name, first["scenario"].robot) == ("push-lateral", "g1")
+    assert (first["scenario"].scenario.name, first["scenario"].scenario.robot) == ("push-lateral", "g1")
     assert (first["host"], first["port"], first["open_browser"]) == ("0.0.0.0", 0, False)
 
 

@@ -19,6 +19,7 @@ from momentum_lab.events import (
     SetAngularGoal,
     SetDirections,
     SetGain,
+    SetGains,
     SetGroundSense,
     SetMismatch,
     SetMotion,
@@ -110,6 +111,8 @@ def chosen_of(session: Session, waiting: Iterable[SessionEvent]) -> Chosen:
                 mismatch = with_error(mismatch, name, value)
             case SetGain(name, value):
                 gains[name] = value
+            case SetGains(values):
+                gains.update(values)
             case SelectController(name):
                 controller, gains = name, values_of(controller_entry(name).gains)
                 planner = planner if planner in controller_entry(name).planners else OWN

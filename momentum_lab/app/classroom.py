@@ -6,6 +6,7 @@ from pathlib import Path
 
 from momentum_lab.app.lesson_wire import LeaveLesson, LessonEvent, LessonNews, OpenLesson, PlayRun, ShowRun
 from momentum_lab.app.playback import Playback
+from momentum_lab.app.wire import OpenRun
 from momentum_lab.errors import InputError, LabError
 from momentum_lab.events import Branch, Event, LookBack, Pause, Play, Reset, SetSpeed, StepOnce
 from momentum_lab.lesson.loader import load_lesson
@@ -79,7 +80,7 @@ class Classroom:
         self._error = ""
         self._told = LessonNews()
 
-    def take(self, event: Event | LessonEvent) -> None:
+    def take(self, event: Event | LessonEvent | OpenRun) -> None:
         """Do what an event asks for, and put on stage what it is about.
 
         Raises:
@@ -168,7 +169,7 @@ class Classroom:
         self._seen.clear()
         self._watched.clear()
 
-    def _pass_on(self, event: Event) -> None:
+    def _pass_on(self, event: Event | OpenRun) -> None:
         """What a hand does; a lesson's own run stays as it was measured, and the hand gets a copy of its start."""
         stage = self.stage
         if not isinstance(stage, RunPlayback) or not self._on_stage or isinstance(event, Pause | SetSpeed):

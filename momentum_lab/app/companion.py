@@ -15,6 +15,7 @@ from momentum_lab.events import (
     SelectPlanner,
     SessionEvent,
     SetGain,
+    SetGains,
     SetPriority,
 )
 from momentum_lab.recording import Sample
@@ -106,6 +107,8 @@ class Companion:
                 return self.beside.priority is None
             case SetGain(name):
                 return self.beside.controller is None and name not in self.beside.gains
+            case SetGains(values):
+                return self.beside.controller is None and not values.keys() & self.beside.gains.keys()
             case SelectController() | SelectPlanner():
                 return self.beside.controller is None
         return True

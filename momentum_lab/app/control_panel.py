@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import viser
 
 from momentum_lab.app import html
-from momentum_lab.app.widgets import Bound, Post, nice_step
+from momentum_lab.app.tuning_panel import TuningPanel
+from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
 from momentum_lab.control.controller import SLACKS
-from momentum_lab.control.gains import GainInfo, declared_gains
 from momentum_lab.control.motion import ANGULAR_GOALS, MOTIONS
 from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.registry import CONTROLLERS
@@ -25,7 +24,6 @@ from momentum_lab.events import (
     SelectRobot,
     SetAngularGoal,
     SetDirections,
-    SetGain,
     SetMotion,
     SetPriority,
 )
@@ -37,8 +35,6 @@ _SLACK_UNITS = tuple("m/s²" if name.startswith("com") else "rad/s²" for name i
 # How often the slacks change on the screen, s.
 _PERIOD = 0.1
 _STILL = "stand still"
-# Viser breaks labels after a slash; this one it does not know.
-_TYPOGRAPHY = str.maketrans("/", "∕")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,12 +56,15 @@ class ControlPanel:
     Args:
         gui: where they go.
         post: where events go.
+        tell: shows a person what was wrong.
         choices: what can be chosen.
         truth: what is the case at the start.
     """
 
-    def __init__(self, gui: viser.GuiApi, post: Post, choices: Choices, truth: Truth) -> None:
-        self._gui, self._post = gui, post
+    def __init__(
+        self, gui: viser.GuiApi, post: Post, tell: Callable[[str], None], choices: Choices, truth: Truth
+    ) -> None:
+        self._gui, self._post, self._tell = gui, post, tell
         self._scenario_name = truth.scenario
         self._robot = Bound(
             gui.add_dropdown("robot", choices.robots, initial_value=truth.robot), SelectRobot, post
@@ -124,12 +123,14 @@ class ControlPanel:
         self._slacks_text = ""
         self._next = -math.inf
         self._directions = _Directions(gui, post, truth)
-        self._gains: _GainPanel = _GainPanel(gui, post, truth)
+        self._gains = TuningPanel(gui, post, tell, truth)
 
     def follow(self, truth: Truth) -> None:
         """Show what is the case."""
         self._scenario_name = truth.scenario
         self._robot.follow(truth.robot)
+        if truth.scenario not in self._scenario.handle.options:
+            self._scenario.handle.options = (*self._scenario.handle.options, truth.scenario)
         self._scenario.follow(truth.scenario)
         self._controller.follow(truth.controller)
         self._planner.follow(truth.planner)
@@ -139,7 +140,7 @@ class ControlPanel:
         self._directions.follow(truth)
         if truth.controller != self._gains.controller:
             self._gains.remove()
-            self._gains = _GainPanel(self._gui, self._post, truth)
+            self._gains = TuningPanel(self._gui, self._post, self._tell, truth)
         self._gains.follow(truth)
 
     def see(self, sample: Sample) -> None:
@@ -178,83 +179,3 @@ class _Directions:
             return SetDirections(text_of((lx, ly, lz, kx, ky, kz)))
 
         return event
-
-
-class _GainPanel:
-    """One slider per declared gain, folded away until somebody wants them."""
-
-    def __init__(self, gui: viser.GuiApi, post: Post, truth: Truth) -> None:
-        self.controller = truth.controller
-        self._post = post
-        self._declared = declared_gains(CONTROLLERS[truth.controller].gains)
-        self._folder = gui.add_folder("Gains", expand_by_default=False)
-        with self._folder:
-            self._sliders = {
-                gain.name: Bound[float](
-                    gain_slider(gui, gain, truth.gains[gain.name]), _setter(gain.name), post
-                )
-                for gain in self._declared.values()
-            }
-        self._changed = gui.add_html("")
-        self._changed_text = ""
-        self._reset = gui.add_button("Reset the gains", color="gray", icon=viser.Icon.RESTORE)
-        self._reset.on_click(lambda _: self._to_defaults())
-        self._values: dict[str, float] = {}
-
-    def follow(self, truth: Truth) -> None:
-        for name, slider in self._sliders.items():
-            slider.follow(truth.gains[name])
-        if truth.gains == self._values:
-            return
-        self._values = dict(truth.gains)
-        text = html.changes(changed_gains(self._declared.values(), self._values))
-        if text != self._changed_text:
-            self._changed_text = self._changed.content = text
-
-    def remove(self) -> None:
-        for handle in (self._folder, self._changed, self._reset):
-            handle.remove()
-
-    def _to_defaults(self) -> None:
-        for gain in self._declared.values():
-            if self._values.get(gain.name) != gain.default:
-                self._post(SetGain(gain.name, gain.default))
-
-
-def changed_gains(declared: Sequence[GainInfo] | Any, values: dict[str, float]) -> list[str]:
-    """Gains that differ from their defaults, in words: name, default, value, unit.
-
-    Args:
-        declared: the gains.
-        values: what they are now, by name.
-    """
-    return [
-        f"{_words(gain)}: {gain.default:g} → {values[gain.name]:g} {_unit(gain)}".strip()
-        for gain in declared
-        if values[gain.name] != gain.default
-    ]
-
-
-def gain_slider(gui: viser.GuiApi, gain: GainInfo, value: float) -> Any:
-    """A slider as a gain declares it."""
-    unit = _unit(gain)
-    return gui.add_slider(
-        f"{_words(gain)} ({unit})" if unit else _words(gain),
-        gain.low,
-        gain.high,
-        nice_step(gain.low, gain.high, gain.default),
-        value,
-        hint=f"{gain.help} From {gain.low:g} to {gain.high:g} {unit}; default {gain.default:g}.",
-    )
-
-
-def _setter(name: str) -> Any:
-    return lambda value: SetGain(name, value)
-
-
-def _words(gain: GainInfo) -> str:
-    return gain.name.replace("_", " ")
-
-
-def _unit(gain: GainInfo) -> str:
-    return "" if gain.unit == "1" else gain.unit.translate(_TYPOGRAPHY).replace("^2", "²").replace("^3", "³")

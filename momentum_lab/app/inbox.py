@@ -12,6 +12,7 @@ from momentum_lab.beside import Beside
 from momentum_lab.errors import InputError
 from momentum_lab.events import (
     ApplyPush,
+    ApplyPushes,
     Event,
     Foresee,
     LoadScenario,
@@ -27,6 +28,7 @@ Data = TypeVar("Data", Push, Beside)
 
 SLOWEST = 1.0 / 8.0
 MOST_TICKS = 1000
+MOST_PUSHES = 50
 MOST_SECONDS = 3600.0
 _MOST_LETTERS = 200
 
@@ -58,6 +60,10 @@ def checked_event(event: Event, robots: Collection[str], scenarios: Collection[s
             raise InputError("scenario", name, f"one of {', '.join(scenarios)}")
         case ApplyPush(push):
             return ApplyPush(_checked(push))
+        case ApplyPushes(pushes):
+            if not 1 <= len(pushes) <= MOST_PUSHES:
+                raise InputError("sequence", f"{len(pushes)} pushes", f"1 to {MOST_PUSHES}")
+            return ApplyPushes(tuple(_checked(push) for push in pushes))
         case Foresee(push):
             return Foresee(_checked(push))
         case SetBeside(beside) if beside is not None:

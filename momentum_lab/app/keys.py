@@ -21,7 +21,7 @@ _REPEATED = 0.12
 
 _HELP = """
 **P** push &nbsp;·&nbsp; **K** play or pause &nbsp;·&nbsp; **J** step 1 ms &nbsp;·&nbsp; **L** step 20 ms
-&nbsp;·&nbsp; **R** stand up again &nbsp;·&nbsp; **1 2 3 4** tabs &nbsp;·&nbsp; **H** this help
+&nbsp;·&nbsp; **R** stand up again &nbsp;·&nbsp; **1 2 3 4 5** tabs &nbsp;·&nbsp; **H** this help
 
 **F** what would this push do &nbsp;·&nbsp; **M** keep this run as A &nbsp;·&nbsp; **N** same pushes again
 &nbsp;·&nbsp; **G** show or hide A
@@ -68,6 +68,7 @@ def add_keys(
         ("Control tab", "2", lambda: tabs.open(1)),
         ("View tab", "3", lambda: tabs.open(2)),
         ("Runs tab", "4", lambda: tabs.open(3)),
+        ("Share tab", "5", lambda: tabs.open(4)),
         ("Help", "H", lambda: _show_help(client)),
     )
     for label, hotkey, act in keys:

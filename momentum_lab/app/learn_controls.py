@@ -8,8 +8,8 @@ from typing import Any
 import msgspec
 import viser
 
-from momentum_lab.app.control_panel import gain_slider
 from momentum_lab.app.robots import LoadedRobot
+from momentum_lab.app.tuning_panel import gain_slider
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
 from momentum_lab.control.gains import declared_gains

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
+import queue
 import threading
 from collections.abc import Collection, Iterator
 from multiprocessing import forkserver
@@ -14,12 +15,25 @@ import msgspec
 from momentum_lab.app import worker
 from momentum_lab.app.inbox import checked_event
 from momentum_lab.app.lesson_wire import LessonEvent
-from momentum_lab.app.wire import Frame, FrameTaken, FrameWanted, packed, unpacked_frame
+from momentum_lab.app.wire import (
+    Frame,
+    FrameTaken,
+    FrameWanted,
+    OpenRun,
+    RunTaken,
+    RunWanted,
+    packed,
+    unpacked_answer,
+)
+from momentum_lab.errors import InputError
 from momentum_lab.events import Event
+from momentum_lab.run_file import Run, as_run
 from momentum_lab.scenario import Scenario
 
 # How long a worker may take to notice that its pipe is closed, s.
 _PATIENCE = 5.0
+# How long it may take to hand over a minute's recording on a busy machine, s.
+_LONG_PATIENCE = 60.0
 
 
 # A process that forks must have no threads, and numerical libraries start theirs when they are loaded.
@@ -37,17 +51,19 @@ class Link:
     """A worker with its own session.
 
     Args:
-        scenario: what the session starts with.
+        first: what the session starts with.
         robots: the robots that may be chosen.
         scenarios: the scenarios that may be chosen.
     """
 
-    def __init__(self, scenario: Scenario, robots: Collection[str], scenarios: Collection[str]) -> None:
+    def __init__(self, first: Scenario | Run, robots: Collection[str], scenarios: Collection[str]) -> None:
         context = multiprocessing.get_context("forkserver")
-        self._robots, self._scenarios = robots, scenarios
+        self._robots, self._scenarios = robots, set(scenarios)
+        self._taken: queue.Queue[RunTaken] = queue.Queue()
+        self._asking = threading.Lock()
         self._connection, theirs = context.Pipe()
         self._sending = threading.Lock()
-        arguments = (theirs, msgspec.json.encode(scenario))
+        arguments = (theirs, msgspec.json.encode(as_run(first)))
         self.process = context.Process(target=worker.main, args=arguments, daemon=True, name="session")
         self.process.start()
         theirs.close()
@@ -60,6 +76,38 @@ class Link:
         """
         self._send(packed(checked_event(event, self._robots, self._scenarios)))
 
+    def open(self, run: Run) -> None:
+        """Let the session start a run that somebody has kept.
+
+        Raises:
+            InputError: its robot is not one that may be chosen.
+        """
+        if run.scenario.robot not in self._robots:
+            raise InputError("robot", run.scenario.robot, f"one of {', '.join(self._robots)}")
+        self._scenarios.add(run.scenario.name)
+        self._send(packed(OpenRun(run)))
+
+    def take_run(self, recording: bool, patience: float = _LONG_PATIENCE) -> RunTaken:
+        """The run as it is now; somebody has to read frames meanwhile.
+
+        Args:
+            recording: whether the samples are wanted too.
+            patience: how long to wait, s.
+
+        Raises:
+            InputError: the session does not answer.
+        """
+        with self._asking:
+            while not self._taken.empty():
+                self._taken.get()  # an answer that came too late for whoever asked
+            self._send(packed(RunWanted(recording)))
+            try:
+                return self._taken.get(timeout=patience)
+            except queue.Empty as error:
+                raise InputError(
+                    "run", "a session that does not answer", "one that runs: reload the page"
+                ) from error
+
     def frames(self) -> Iterator[Frame]:
         """Frames as they come; asking for the next one says that the last one has been drawn."""
         with self._connection:
@@ -68,7 +116,11 @@ class Link:
                     data = self._connection.recv_bytes()
                 except (EOFError, OSError):
                     return
-                yield unpacked_frame(data)
+                answer = unpacked_answer(data)
+                if isinstance(answer, RunTaken):
+                    self._taken.put(answer)
+                    continue
+                yield answer
                 self._send(packed(FrameTaken()))
 
     def ask(self, event: LessonEvent) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import viser
 
-from momentum_lab.app import html
+from momentum_lab.app import html, share_html
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.ground_panel import GroundPanel
 from momentum_lab.app.keys import add_keys
@@ -20,6 +20,8 @@ from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.runs_panel import RunsPanel
+from momentum_lab.app.sequence_panel import SequencePanel
+from momentum_lab.app.share_panel import SharePanel, Sharing
 from momentum_lab.app.status_bar import StatusBar
 from momentum_lab.app.tabs import Tabs
 from momentum_lab.app.view_panel import ViewPanel, ViewSettings
@@ -43,6 +45,7 @@ class Panels:
         redraw: asks for a new picture.
         choices: robots and scenarios to choose from.
         truth: what is the case at the start.
+        sharing: what the share tab can ask for.
         feet: names of the robot's feet.
         ask: where a lesson's events go.
         library: the lessons.
@@ -58,6 +61,7 @@ class Panels:
         redraw: Callable[[], None],
         choices: Choices,
         truth: Truth,
+        sharing: Sharing,
         feet: tuple[str, ...],
         ask: Callable[[LessonEvent], None],
         library: Library,
@@ -71,17 +75,23 @@ class Panels:
         roomy = client.camera.image_width >= _ROOMY * client.camera.image_height
         self.settings = ViewSettings(labelled=ALL_LABELS if roomy else FEW_LABELS)
         self.status = StatusBar(gui, post)
-        group = gui.add_tab_group()
-        with group.add_tab("Push", viser.Icon.HAND_MOVE):
+        gui.add_html(share_html.HIDDEN_NEXT)
+        address = gui.add_text("address", "")
+        group = gui.add_tab_group()  # five of them fit into one line without icons
+        with group.add_tab("Push"):
             self.push = PushPanel(gui, post, tell, redraw)
+            SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
             self.ground = GroundPanel(gui, post, tell, feet)
-        with group.add_tab("Control", viser.Icon.ADJUSTMENTS):
-            self.control = ControlPanel(gui, post, choices, truth)
+        with group.add_tab("Control"):
+            self.control = ControlPanel(gui, post, tell, choices, truth)
             self.mismatch = MismatchPanel(gui, post, truth)
-        with group.add_tab("View", viser.Icon.EYE):
+        with group.add_tab("View"):
             ViewPanel(gui, self.settings, look, redraw)
-        with group.add_tab("Runs", viser.Icon.VERSIONS):
+        with group.add_tab("Runs"):
             self.runs = RunsPanel(gui, post, redraw, truth)
+        with group.add_tab("Share"):
+            self.share = SharePanel(gui, sharing, address)
+        gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         left = gui.add_panel()
         # The browser opens the first tab.
         tabs = [

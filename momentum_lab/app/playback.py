@@ -8,13 +8,15 @@ import numpy as np
 from momentum_lab.app.chosen import chosen_of, values_of
 from momentum_lab.app.companion import Companion
 from momentum_lab.app.foresight import Foresight
-from momentum_lab.app.wire import Fallen, Foreseen, Truth
+from momentum_lab.app.opened import NOTHING_OPENED, OpenedRun
+from momentum_lab.app.wire import Fallen, Foreseen, OpenRun, RunTaken, Truth
 from momentum_lab.beside import Beside
 from momentum_lab.control.motion import motions_of
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.events import (
     ApplyPush,
+    ApplyPushes,
     Branch,
     Event,
     Foresee,
@@ -33,10 +35,12 @@ from momentum_lab.events import (
     StepOnce,
     StopGround,
 )
+from momentum_lab.finished import com_speed
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
 from momentum_lab.robot.catalog import load_spec
 from momentum_lab.robot.model import RobotModel
+from momentum_lab.run_file import Run, as_run, run_of
 from momentum_lab.scenario import Scenario, changed, load_scenario, sides
 from momentum_lab.session import Session
 from momentum_lab.timeline import Timeline
@@ -54,12 +58,14 @@ class Playback:
     """One session, and whether its time runs.
 
     Args:
-        scenario: what to start with; it can be started again by its name.
+        first: what to start with; it can be started again by its scenario's name.
         robot: its robot, if it is loaded already.
     """
 
-    def __init__(self, scenario: Scenario, robot: RobotModel | None = None) -> None:
-        self._first = scenario
+    session: Session
+
+    def __init__(self, first: Scenario | Run, robot: RobotModel | None = None) -> None:
+        self._first = as_run(first)
         self.run = 0
         self.speed = 1.0
         self.playing = True
@@ -67,7 +73,7 @@ class Playback:
         self.beside: Companion | None = None
         self.foresights: tuple[Foresight, ...] = ()
         self._waiting: list[SessionEvent] = []
-        self._begin(scenario, robot)
+        self._begin(self._first, robot)
 
     @property
     def latest(self) -> Sample:
@@ -83,7 +89,7 @@ class Playback:
         """Use a moment in which nothing has to be done."""
         self.session.recording.reserve(_IN_PASSING)
 
-    def take(self, event: Event) -> None:
+    def take(self, event: Event | OpenRun) -> None:
         """Do what an event asks for.
 
         Raises:
@@ -111,27 +117,32 @@ class Playback:
             case Foresee(push):
                 self._foresee(push)
             case RunAgain():
-                self._begin(self._again())
+                self._begin(Run(self._again()))
             case SelectRobot(name):
-                self._begin(self._with_robot(name))
+                self._begin(Run(self._with_robot(name)))
             case LoadScenario(name):
                 self._begin(self._scenario(name))
+            case OpenRun(run):
+                self._begin(run)
+                self._first = run
             case _:
                 self._pass_on(event)
 
     def tick(self, count: int) -> None:
         """Some ticks, fewer if the simulation cannot go on."""
         for _ in range(count):
-            if self.stopped is not None:
-                return
+            if self.stopped is not None or self._opened.ends(self.session):
+                self.playing = False
+                break
             self._timeline.note()
+            self._cue()
             try:
                 self.session.tick()
             except SimulationError as error:
                 self.stopped, self.playing = str(error), False
             if self.beside is not None:
                 self.beside.tick()
-        self._waiting.clear()
+            self._waiting.clear()
 
     def truth(self, real_time_factor: float) -> Truth:
         """What is the case now; what waits for the next tick counts as done."""
@@ -162,8 +173,34 @@ class Playback:
             mismatch=chosen.mismatch,
             behind=self._behind * session.scenario.timestep,
             first_push=_first(session.pushes, self.shown.number("time")),
-            beside=None if self.beside is None else self.beside.beside,
+            beside=self._difference,
+            opened=self._opened.told(session),
         )
+
+    def taken(self, recording: bool) -> RunTaken:
+        """The run as it is now, with its samples or without; a robot beside the first is in its scenario."""
+        session, fall = self.session, self.session.fall
+        run = run_of(session, self._waiting)
+        scenario = msgspec.structs.replace(run.scenario, beside=self._difference)
+        return RunTaken(
+            run=msgspec.structs.replace(run, scenario=scenario),
+            rows=session.recording.rows().tobytes() if recording else b"",
+            time=session.time,
+            controller=session.controller,
+            planner=session.planner,
+            priority=session.priority,
+            gains=values_of(session.gains),
+            pushes=session.pushes,
+            fall=None if fall is None else Fallen(fall.time, fall.reason),
+            failures=session.solver_failures,
+            mismatch=session.mismatch,
+            com_speed=com_speed(session),
+        )
+
+    @property
+    def _difference(self) -> Beside | None:
+        """What a robot beside the first does differently."""
+        return None if self.beside is None else self.beside.beside
 
     def beside_truth(self, first: Truth) -> Truth | None:
         """What is the case with the robot beside the first."""
@@ -226,23 +263,35 @@ class Playback:
             self._pass_on(event)
         self.tick(1)
 
-    def _pass_on(self, event: SessionEvent) -> None:
+    def _cue(self) -> None:
+        """Let the robots do what was done at this tick of an opened run."""
+        for event in self._opened.due(self.session):
+            self._post(event)
+            self.run += isinstance(event, Reset)
+
+    def _post(self, event: SessionEvent) -> None:
+        """Let the robots do something at the start of their next tick."""
         self.session.post(event)
         self._waiting.append(event)
         if self.beside is not None:
             self.beside.take(event)
             self.beside.align(chosen_of(self.session, self._waiting))
-        if isinstance(event, ApplyPush | MoveGround | StopGround | SetFriction):
+
+    def _pass_on(self, event: SessionEvent) -> None:
+        self._post(event)
+        if isinstance(event, ApplyPush | ApplyPushes | MoveGround | StopGround | SetFriction):
             self._behind = 0  # it acts now, and has to be seen
         if isinstance(event, Reset):
             self._behind = 0
             self.playing = self.playing or self.stopped is not None
             self.stopped = None
+            self._opened = NOTHING_OPENED  # its ticks are counted from another start
             self.run += 1
             self.tick(1)
 
-    def _begin(self, scenario: Scenario, robot: RobotModel | None = None) -> None:
+    def _begin(self, run: Run, robot: RobotModel | None = None) -> None:
         """A new session, standing; the old one goes on if this one cannot be made."""
+        scenario = run.scenario
         old = getattr(self, "session", None)
         if old is not None and old.scenario.robot == scenario.robot:
             robot = old.robot
@@ -251,10 +300,12 @@ class Playback:
             sessions.append(Session(side, robot, capacity=round(MEMORY / scenario.timestep)))
             sessions[-1].recording.reserve(_AT_ONCE)
             robot = sessions[-1].robot
-        self.session, self._timeline = sessions[0], Timeline(sessions[0])
+        sessions[0].check(entry.event for entry in run.events)
         beside = scenario.beside
         self.beside = None if beside is None else Companion(sessions[-1], beside)
         self.foresights = ()
+        self._opened = OpenedRun(run)
+        self.session, self._timeline = sessions[0], Timeline(sessions[0])
         self._behind = 0
         self._waiting.clear()
         self.stopped = None
@@ -310,10 +361,14 @@ class Playback:
             beside=truth.beside,
         )
 
-    def _scenario(self, name: str) -> Scenario:
-        """The scenario of that name with the robot that is there."""
-        scenario = self._first if name == self._first.name else load_scenario(name)
-        return changed(scenario, robot=self.session.scenario.robot)
+    def _scenario(self, name: str) -> Run:
+        """The scenario of that name with the robot that is there; what was opened under it is played again."""
+        robot = self.session.scenario.robot
+        if name != self._first.scenario.name:
+            return Run(changed(load_scenario(name), robot=robot))
+        if robot == self._first.scenario.robot:
+            return self._first
+        return Run(changed(self._first.scenario, robot=robot))
 
 
 def _first(pushes: tuple[Push, ...], time: float) -> Push | None:

@@ -75,8 +75,8 @@ class PushPanel:
             hint="Where the push points: 0 forward, 90 to the robot's left.",
         )
         self._presets = gui.add_button_group(" ", tuple(_DIRECTIONS))
-        self._body = gui.add_dropdown("body", (_TRUNK,), hint="Which body is pushed.")
-        self._through_com = gui.add_checkbox(
+        self._body: Any = gui.add_dropdown("body", (_TRUNK,), hint="Which body is pushed.")
+        self._through_com: Any = gui.add_checkbox(
             "through the CoM", True, hint="Push at the height of the centre of mass."
         )
         self._height: Any = gui.add_slider(
@@ -146,6 +146,18 @@ class PushPanel:
             body=None if self._body.value == _TRUNK else self._body.value,
             shape=self._shape.value,
         )
+
+    def show(self, push: Push) -> None:
+        """Let the widgets describe a push."""
+        if push.force is not None:
+            self._force.value = min(push.force, self._force.max)
+        self._duration.value = 1e3 * push.duration
+        self._direction.value = (push.direction_deg + 180.0) % 360.0 - 180.0
+        self._through_com.value = push.height is None
+        self._height.value = self._height.value if push.height is None else push.height
+        self._body.value = push.body or _TRUNK
+        self._shape.value = push.shape
+        self._free_height()
 
     def apply(self) -> None:
         """Push."""

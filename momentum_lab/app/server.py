@@ -24,6 +24,7 @@ from momentum_lab.app.robots import RobotShelf
 from momentum_lab.app.visitor import Visitor
 from momentum_lab.errors import ServerError
 from momentum_lab.robot.catalog import robot_names
+from momentum_lab.run_file import Run, as_run
 from momentum_lab.scenario import Scenario, scenario_names, sides
 from momentum_lab.session import Session
 
@@ -37,7 +38,7 @@ class LabServer:
     """The lab on a port; use it as a context manager, or call `close`.
 
     Args:
-        scenario: what every new session starts with.
+        first: what every new session starts with.
         host: address to listen on.
         port: port to listen on; 0 for any free one.
         profile: how much browsers have to draw.
@@ -51,7 +52,7 @@ class LabServer:
 
     def __init__(
         self,
-        scenario: Scenario,
+        first: Scenario | Run,
         host: str = "127.0.0.1",
         port: int = 0,
         profile: RenderProfile = NORMAL,
@@ -60,7 +61,8 @@ class LabServer:
     ) -> None:
         _check_address(host, port)
         self._library, self._lesson = library or Library(), lesson
-        self._scenario, self._profile = scenario, profile
+        self._first, self._profile = as_run(first), profile
+        scenario = self._first.scenario
         warm_up()
         self._shelf = RobotShelf()
         for side in sides(scenario):  # refuses what cannot start
@@ -121,9 +123,10 @@ class LabServer:
             self._visitors[client.client_id] = Visitor(
                 client,
                 self._shelf,
-                self._scenario,
+                self._first,
                 self._choices,
                 self._profile,
+                self.url,
                 self._library,
                 self._lesson,
             )
@@ -140,7 +143,7 @@ class LabServer:
 
 
 def serve(
-    scenario: Scenario,
+    first: Scenario | Run,
     host: str = "127.0.0.1",
     port: int = 8080,
     open_browser: bool = True,
@@ -151,7 +154,7 @@ def serve(
     """Serve the lab until Ctrl+C or SIGTERM.
 
     Args:
-        scenario: what every new session starts with.
+        first: what every new session starts with.
         host: address to listen on.
         port: port to listen on; 0 for any free one.
         open_browser: whether to open the page in this machine's browser.
@@ -163,7 +166,7 @@ def serve(
         ServerError: the host or the port cannot be used.
         InputError: the scenario cannot start, or a mesh of its robot is missing.
     """
-    with _ended_by_signal() as ended, LabServer(scenario, host, port, profile, library, lesson) as lab:
+    with _ended_by_signal() as ended, LabServer(first, host, port, profile, library, lesson) as lab:
         print(f"momentum lab: {lab.url}  (Ctrl+C ends it)", flush=True)
         if open_browser:
             webbrowser.open(lab.url)

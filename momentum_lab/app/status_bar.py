@@ -150,8 +150,13 @@ def _buttons(playing: bool) -> tuple[str, ...]:
     return ("Pause" if playing else "Play", _SMALL, _LARGE, _STAND_UP)
 
 
+_BITS = {True: ", with the same bits", False: ", with other bits", None: ""}
+
+
 def _sentence(truth: Truth) -> str:
     """What was done; nothing before the first push."""
+    if truth.opened is not None and truth.opened.over:
+        return f"The opened run ends here{_BITS[truth.opened.agrees]}. Play goes on."
     push = truth.push
     if push is None:
         return ""

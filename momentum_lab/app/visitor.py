@@ -23,12 +23,14 @@ from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.profile import RenderProfile
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot, RobotShelf
+from momentum_lab.app.share_panel import Sharing
+from momentum_lab.app.snapshot import view_of
 from momentum_lab.app.wire import Frame, Truth, rows_of
 from momentum_lab.app.world import add_floor, add_world
 from momentum_lab.errors import InputError
 from momentum_lab.events import Event
 from momentum_lab.recording import Sample
-from momentum_lab.scenario import Scenario
+from momentum_lab.run_file import Run
 from momentum_lab.session import Fall
 from momentum_lab.status import status_of
 
@@ -60,9 +62,10 @@ class Visitor:
     Args:
         client: the browser tab.
         shelf: loaded robots.
-        scenario: what the session starts with.
+        first: what the session starts with.
         choices: what can be chosen.
         profile: how much to draw.
+        url: where the lab is served.
         library: the lessons.
         lesson: the script of the lesson to begin with.
     """
@@ -71,16 +74,17 @@ class Visitor:
         self,
         client: viser.ClientHandle,
         shelf: RobotShelf,
-        scenario: Scenario,
+        first: Run,
         choices: Choices,
         profile: RenderProfile,
+        url: str,
         library: Library,
         lesson: Path | None = None,
     ) -> None:
-        self._library, self._lesson = library, lesson
+        self._url, self._library, self._lesson = url, library, lesson
         self._client, self._shelf, self._profile = client, shelf, profile
         self._choices = choices
-        self._link = Link(scenario, choices.robots, choices.scenarios)
+        self._link = Link(first, choices.robots, choices.scenarios)
         self._stage: Stage | None = None
         self._panels: Panels | None = None
         self._comparison = Comparison(client)
@@ -181,6 +185,7 @@ class Visitor:
             self._link.want_frame,
             self._choices,
             truth,
+            self._sharing(),
             feet,
             self._link.ask,
             self._library,
@@ -189,6 +194,16 @@ class Visitor:
         if self._stage is not None:
             self._receive(self._panels, self._stage)
         return self._panels
+
+    def _sharing(self) -> Sharing:
+        return Sharing(
+            self._link.take_run,
+            self._link.open,
+            self.tell,
+            lambda name, content: self._client.send_file_download(name, content, save_immediately=True),
+            lambda: view_of(self._client),
+            self._url,
+        )
 
     def _receive(self, panels: Panels, stage: Stage) -> None:
         """Fit the panels to the robot on stage."""
@@ -225,6 +240,7 @@ class Visitor:
         panels.status.follow(truth, status, sample.number("time"))
         panels.control.follow(truth)
         panels.learn.follow(truth, sample.number("time"), frame.lesson)
+        panels.share.follow(truth)
         panels.ground.follow(truth)
         panels.mismatch.follow(truth)
         panels.control.see(sample)

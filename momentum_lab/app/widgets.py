@@ -12,8 +12,8 @@ from momentum_lab.events import Event
 Post = Callable[[Event], None]
 Value = TypeVar("Value", bool, float, str)
 
-# How long a widget that was touched keeps what the hand gave it, s: longer than an event needs to come back.
-_HANDS_OFF = 0.7
+HANDS_OFF = 0.7
+"""How long a widget that was touched keeps what the hand gave it, s: longer than an event needs to come back."""
 
 
 class Bound(Generic[Value]):
@@ -45,7 +45,7 @@ class Bound(Generic[Value]):
         """Show what is the case, unless a hand has just been there."""
         if not _same(self.handle.value, self._known):
             return  # a hand has moved it this very moment, and `_changed` is on its way
-        if self._clock() - self._touched > _HANDS_OFF and not _same(self._known, truth):
+        if self._clock() - self._touched > HANDS_OFF and not _same(self._known, truth):
             self._known = truth
             self.handle.value = truth
 

@@ -12,6 +12,7 @@ from momentum_lab.control.ground_sense import GroundSense
 from momentum_lab.control.motion import AngularGoal
 from momentum_lab.physics.mismatch import EXACT, Mismatch
 from momentum_lab.physics.push import Push
+from momentum_lab.run_file import Run
 
 
 class FrameTaken(msgspec.Struct, frozen=True, tag=True):
@@ -22,11 +23,37 @@ class FrameWanted(msgspec.Struct, frozen=True, tag=True):
     """The picture has to be drawn again although nothing has happened in the session."""
 
 
+class OpenRun(msgspec.Struct, frozen=True, tag=True):
+    """Start a run that somebody has kept, and play its events as they were."""
+
+    run: Run
+
+
+class RunWanted(msgspec.Struct, frozen=True, tag=True):
+    """What has been done so far has to be told, with the recording or without."""
+
+    recording: bool
+
+
 class Fallen(msgspec.Struct, frozen=True):
     """When and why the robot has fallen."""
 
     time: float
     reason: str
+
+
+class Opened(msgspec.Struct, frozen=True):
+    """A run that has been opened and is being played.
+
+    Attributes:
+        seconds: how long it lasts, s; 0: it has no end.
+        over: whether it has been played to its end.
+        agrees: whether its last sample has the same bits; None: not known, or something else was done in it.
+    """
+
+    seconds: float
+    over: bool = False
+    agrees: bool | None = None
 
 
 class Truth(msgspec.Struct, frozen=True):
@@ -59,6 +86,7 @@ class Truth(msgspec.Struct, frozen=True):
         behind: how long before the present end of the run the sample is that is looked at, s.
         first_push: the first push since the robot stood up; None before it has begun.
         beside: what a robot beside this one does differently; None when there is none.
+        opened: the run that has been opened; None when it is no opened run that plays.
     """
 
     run: int
@@ -87,6 +115,7 @@ class Truth(msgspec.Struct, frozen=True):
     behind: float = 0.0
     first_push: Push | None = None
     beside: Beside | None = None
+    opened: Opened | None = None
 
 
 class Other(msgspec.Struct, frozen=True):
@@ -117,7 +146,7 @@ class Foreseen(msgspec.Struct, frozen=True):
     fall: Fallen | None
 
 
-class Frame(msgspec.Struct, frozen=True):
+class Frame(msgspec.Struct, frozen=True, tag=True):
     """Everything new since the last frame.
 
     Attributes:
@@ -141,15 +170,49 @@ class Frame(msgspec.Struct, frozen=True):
     foreseen: tuple[Foreseen, ...] = ()
 
 
-Message = events.Event | LessonEvent | FrameTaken | FrameWanted
+class RunTaken(msgspec.Struct, frozen=True, tag=True):
+    """A run as it is now, since its robot last stood up.
+
+    Attributes:
+        run: scenario, events, length.
+        rows: all samples that are kept, float64, oldest first; empty if they were not wanted.
+        time: of the session, s.
+        controller: its name.
+        planner: its name.
+        priority: from 0 to 1.
+        gains: all gains of the controller.
+        pushes: all pushes, sized.
+        fall: when and why the robot has fallen; None: it has not.
+        failures: how many solves have failed.
+        mismatch: how the real robot differs from its model.
+        com_speed: of the CoM against the ground under the feet at the end, m/s.
+    """
+
+    run: Run
+    rows: bytes
+    time: float
+    controller: str
+    planner: str
+    priority: float
+    gains: dict[str, float]
+    pushes: tuple[Push, ...]
+    fall: Fallen | None
+    failures: int
+    mismatch: Mismatch
+    com_speed: float
+
+
+Message = events.Event | LessonEvent | FrameTaken | FrameWanted | OpenRun | RunWanted
+Answer = Frame | RunTaken
 
 _encoder = msgspec.msgpack.Encoder()
 _message_decoder = msgspec.msgpack.Decoder(Message)
 _frame_decoder = msgspec.msgpack.Decoder(Frame)
+_answer_decoder = msgspec.msgpack.Decoder(Answer)
 
 
-def packed(message: Message | Frame) -> bytes:
-    """A message or a frame as bytes."""
+def packed(message: Message | Answer) -> bytes:
+    """A message or an answer as bytes."""
     return _encoder.encode(message)
 
 
@@ -161,6 +224,11 @@ def unpacked_message(data: bytes) -> Message:
 def unpacked_frame(data: bytes) -> Frame:
     """The frame that `packed` has written."""
     return _frame_decoder.decode(data)
+
+
+def unpacked_answer(data: bytes) -> Answer:
+    """The frame or the run that `packed` has written."""
+    return _answer_decoder.decode(data)
 
 
 def rows_of(data: bytes, width: int) -> np.ndarray:

@@ -25,14 +25,16 @@ from momentum_lab.app.wire import (
     Frame,
     FrameTaken,
     FrameWanted,
+    OpenRun,
     Other,
+    RunWanted,
     Truth,
     packed,
     unpacked_message,
 )
 from momentum_lab.errors import LabError
 from momentum_lab.events import Event, Play, SetSpeed
-from momentum_lab.scenario import Scenario
+from momentum_lab.run_file import Run
 
 FRAMES_PER_SECOND = 40.0
 HISTORY_EVERY = 20
@@ -50,17 +52,17 @@ _AHEAD, _AHEAD_IN_PAUSE = 5, 50
 _MOST_HISTORY = 1000
 
 
-def main(connection: Connection, scenario: bytes) -> None:
+def main(connection: Connection, first: bytes) -> None:
     """Run a session until the pipe closes.
 
     Args:
         connection: the worker's end of the pipe.
-        scenario: what to start with, as JSON.
+        first: the run to start with, as JSON.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with threadpool_limits(1), connection:
         try:
-            Worker(connection, Playback(msgspec.json.decode(scenario, type=Scenario))).run()
+            Worker(connection, Playback(msgspec.json.decode(first, type=Run))).run()
         except (EOFError, BrokenPipeError, ConnectionResetError):
             return
 
@@ -126,10 +128,13 @@ class Worker:
                 self._taken = True
             case FrameWanted():
                 self._news = True
+            case RunWanted(recording):
+                self._connection.send_bytes(packed(self._playback.taken(recording)))
+                self._pacer.start(self._clock(), self._playback.speed)  # a long recording takes its time
             case _:
                 self._take(message)
 
-    def _take(self, event: Event | LessonEvent) -> None:
+    def _take(self, event: Event | LessonEvent | OpenRun) -> None:
         before = self._playback
         run, playing, ticks = before.run, before.playing, before.session.ticks
         try:
@@ -153,8 +158,14 @@ class Worker:
     def _advance(self, due: int) -> None:
         playback = self._playback
         for _ in range(due):
+            if not playback.playing:
+                break  # an opened run has come to its end
             self._pacer.begin(self._clock())
+            run = playback.run
             playback.tick(1)
+            if playback.run != run:
+                self._history.clear()
+                self._other_history.clear()
             if playback.session.ticks % HISTORY_EVERY == 0:
                 self._remember()
         self._news = self._news or due > 0

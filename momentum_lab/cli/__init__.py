@@ -1,4 +1,6 @@
-"""The command line: momentum-lab app | run | limit | lesson | figure | list | equations | robot-check | bench.
+"""The command line: momentum-lab COMMAND ...
+
+COMMAND: app | run | limit | report | replay | lesson | figure | list | equations | robot-check | bench.
 
 Exit codes: 0 the command did what was asked (a robot that falls is a result, not an error), 1 something broke
 down on the way, a figure's or lesson's claim or an equation does not hold, or a checked robot falls, 2 bad
@@ -74,6 +76,14 @@ def _imported(name: str) -> Callable[[Namespace], int]:
         from momentum_lab.cli.limit import limit
 
         return limit
+    if name == "report":
+        from momentum_lab.cli.report import report
+
+        return report
+    if name == "replay":
+        from momentum_lab.cli.replay import replay
+
+        return replay
     if name == "lesson":
         from momentum_lab.cli.lesson import lesson
 

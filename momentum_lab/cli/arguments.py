@@ -21,8 +21,20 @@ from momentum_lab.physics.plate import MAX_FRICTION
 from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
 from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 
-COMMANDS = ("app", "run", "limit", "lesson", "figure", "list", "equations", "robot-check", "bench")
-KINDS = ("robots", "controllers", "planners", "scenarios", "lessons", "figures", "gains")
+COMMANDS = (
+    "app",
+    "run",
+    "limit",
+    "report",
+    "replay",
+    "lesson",
+    "figure",
+    "list",
+    "equations",
+    "robot-check",
+    "bench",
+)
+KINDS = ("robots", "controllers", "planners", "scenarios", "lessons", "figures", "gains", "presets")
 _MAX_PORT = 65535
 _MAX_BENCH_SECONDS, _MAX_BENCH_MINUTES = 600.0, 60.0
 
@@ -87,6 +99,12 @@ def _parser() -> _Parser:
         ("app", "open the lab in the browser", _app_arguments),
         ("run", "run a scenario without a screen", _run_arguments),
         ("limit", "the largest push that is survived, by bisection", _limit_arguments),
+        ("report", "a run as one HTML file: figures, numbers, gains, checks, limits", _report_arguments),
+        (
+            "replay",
+            "play a run file or a trace again and say whether every bit is the same",
+            _replay_arguments,
+        ),
         (
             "lesson",
             "a guided lesson: a question, a prediction, an answer that is measured",
@@ -99,7 +117,7 @@ def _parser() -> _Parser:
         ),
         (
             "list",
-            "what there is: robots, controllers, planners, scenarios, lessons, figures, gains",
+            "what there is: robots, controllers, planners, scenarios, lessons, figures, gains, presets",
             _list_arguments,
         ),
         ("equations", "how exactly the chapter's equations hold on a robot", _equations_arguments),
@@ -120,6 +138,8 @@ def _usage(command: str) -> str:
     words = {
         "run": "run SCENARIO",
         "limit": "limit SCENARIO",
+        "report": "report SCENARIO --out FILE",
+        "replay": "replay FILE",
         "lesson": "lesson NAME",
         "figure": "figure NAME --out DIR",
         "list": f"list {'|'.join(KINDS)}",
@@ -129,8 +149,9 @@ def _usage(command: str) -> str:
 
 
 def _app_arguments(parser: _Parser) -> None:
-    parser.add_argument("--scenario", default="stand", metavar="S", help="what to start with")
+    parser.add_argument("--scenario", metavar="S", help="what to start with; otherwise stand")
     _choice_arguments(parser)
+    _code_argument(parser)
     _serving_arguments(parser)
 
 
@@ -147,12 +168,27 @@ def _serving_arguments(parser: _Parser) -> None:
 
 
 def _run_arguments(parser: _Parser) -> None:
+    _scenario_arguments(parser)
+    parser.add_argument("--out", metavar="FILE", help="save the trace as .npz")
+    parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+
+
+def _report_arguments(parser: _Parser) -> None:
+    _scenario_arguments(parser)
+    parser.add_argument("--out", metavar="FILE", help="where the report goes, an .html file")
+
+
+def _replay_arguments(parser: _Parser) -> None:
+    parser.add_argument("file", nargs="?", default="", metavar="FILE", help="a run file, or a trace.npz")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _scenario_arguments(parser: _Parser) -> None:
     parser.add_argument("scenario", nargs="?", default="", metavar="SCENARIO", help="a name, or a .toml file")
     _choice_arguments(parser)
     _push_arguments(parser)
     _tuning_arguments(parser)
-    parser.add_argument("--out", metavar="FILE", help="save the trace as .npz")
-    parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+    _code_argument(parser)
 
 
 def _limit_arguments(parser: _Parser) -> None:
@@ -260,6 +296,13 @@ def _choice_arguments(parser: _Parser) -> None:
         metavar="NAME=VALUE",
         help="let the real robot differ from its model: mass_error=0.1, torque_delay_ms=2; may be repeated",
     )
+    parser.add_argument(
+        "--preset", metavar="NAME", help="gains by name: soft, chapter-like, stiff, or your own"
+    )
+
+
+def _code_argument(parser: _Parser) -> None:
+    parser.add_argument("--code", metavar="CODE", help="a shared run instead of a scenario")
 
 
 def _lesson_arguments(parser: _Parser) -> None:

@@ -14,6 +14,7 @@ from rich.table import Table
 from momentum_lab.cli.arguments import KINDS
 from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.planner import PLANNERS
+from momentum_lab.control.presets import presets
 from momentum_lab.control.registry import CONTROLLERS, controller_entry
 from momentum_lab.errors import InputError
 from momentum_lab.lesson.loader import headline, lesson_files, lesson_folder
@@ -37,6 +38,8 @@ def list_things(args: Namespace) -> int:
         raise InputError("list", args.kind, ", ".join(KINDS))
     if args.kind == "gains":
         things = gains(args.controller)
+    elif args.kind == "presets":
+        things = presets_of(args.controller)
     elif args.kind == "lessons":
         things = lessons(LESSONS if args.lessons is None else lesson_folder(args.lessons))
     else:
@@ -112,6 +115,18 @@ def gains(controller: str) -> Things:
     ]
 
 
+def presets_of(controller: str) -> Things:
+    """All presets of a controller: shipped ones first, then one's own.
+
+    Raises:
+        InputError: there is no such controller.
+    """
+    return [
+        {"name": name, "summary": preset.summary, "gains": preset.gains}
+        for name, preset in presets(controller).items()
+    ]
+
+
 _LISTS: dict[str, Callable[[], Things]] = {
     "robots": robots,
     "controllers": controllers,
@@ -135,4 +150,6 @@ def _show(things: Things) -> None:
 def _text(value: Any) -> str:
     if isinstance(value, list):
         return " to ".join(_text(end) for end in value)
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_text(inner)}" for key, inner in value.items())
     return f"{value:g}" if isinstance(value, float) else str(value)

@@ -4,21 +4,29 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 from rich.console import Console
 from rich.table import Table
 
-from momentum_lab.cli.choices import chosen_scenario
+from momentum_lab.cli.choices import chosen_run
 from momentum_lab.cli.progress import interruptible, progress
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.headless import Timing, run_headless
 from momentum_lab.provenance import provenance
 from momentum_lab.recording import save_trace, writable_file
-from momentum_lab.scenario import Scenario, sides
+from momentum_lab.replay import Agreement, Script, end_agreement, prepared
+from momentum_lab.run_file import Run
 from momentum_lab.session import Session
 from momentum_lab.summary import Summary, summarize
+
+if TYPE_CHECKING:
+    from momentum_lab.cli.beside import Second
+
+Made = TypeVar("Made")
 
 
 def run(args: Namespace) -> int:
@@ -34,22 +42,19 @@ def run(args: Namespace) -> int:
         SimulationError: the simulation broke down before its first sample.
         KeyboardInterrupt: Ctrl+C.
     """
-    scenario = chosen_scenario(args)
+    chosen = chosen_run(args)
     out = None if args.out is None else writable_file(Path(args.out))
-    session, *beside = [_session(side) for side in sides(scenario)]
-    for push in scenario.pushes:
-        if push.start >= scenario.seconds:
-            _note(f"the push at {push.start:g} s comes after the end of the run at {scenario.seconds:g} s")
-    timing, stopped = _timed(session)
-    if timing.error is not None and not len(session.recording):
-        raise SimulationError(timing.error)
+    second = None if chosen.scenario.beside is None else _fitting(chosen, _second)
+    session, timing, stopped = played(chosen)
     if out is not None:
         save_trace(session.recording, provenance(session), out)
     if stopped:
         raise KeyboardInterrupt
+    if chosen.end:
+        _note(said(end_agreement(chosen, session)))
     summary = summarize(session, timing)
-    for other in beside:
-        summary = msgspec.structs.replace(summary, beside=_beside(other, out))
+    if second is not None:
+        summary = msgspec.structs.replace(summary, beside=_beside(second, chosen, out))
     if args.json:
         print(msgspec.json.encode(summary).decode())
     else:
@@ -58,6 +63,28 @@ def run(args: Namespace) -> int:
     for error in errors:
         _note(error)
     return 1 if errors else 0
+
+
+def played(chosen: Run) -> tuple[Session, Timing, bool]:
+    """A run to its end or to Ctrl+C, with a bar on a terminal; and whether it was the latter.
+
+    Raises:
+        InputError: something in it is not possible here.
+        SimulationError: it broke down before its first sample.
+    """
+    session = _fitting(chosen, prepared)
+    end = chosen.length * session.scenario.timestep
+    for push in chosen.scenario.pushes:
+        if push.start >= end:
+            _note(f"the push at {push.start:g} s comes after the end of the run at {end:g} s")
+    return session, *_timed(session, Script(chosen).cue, chosen.length)
+
+
+def said(agreement: Agreement) -> str:
+    """Whether the bits agree, in one line."""
+    if agreement.agrees:
+        return f"the same bits: {agreement.compared}"
+    return f"other bits: {agreement.compared}; {agreement.difference}"
 
 
 def show(summary: Summary, out: Path | None) -> None:
@@ -74,7 +101,13 @@ def show(summary: Summary, out: Path | None) -> None:
         print(f"trace: {out}")
 
 
-def _beside(session: Session, out: Path | None) -> Summary:
+def _second(chosen: Run) -> Second:
+    from momentum_lab.cli.beside import Second  # loads a part of the app, which one robot does not need
+
+    return Second(chosen)
+
+
+def _beside(second: Second, chosen: Run, out: Path | None) -> Summary:
     """Run the robot beside the first one.
 
     Raises:
@@ -83,34 +116,41 @@ def _beside(session: Session, out: Path | None) -> Summary:
     """
     if out is not None:
         _note(f"{out} holds the first robot; the one beside it is in the summary only")
-    timing, stopped = _timed(session)
-    if timing.error is not None and not len(session.recording):
-        raise SimulationError(timing.error)
+    timing, stopped = _timed(second.session, second.cue, chosen.length)
     if stopped:
         raise KeyboardInterrupt
-    return summarize(session, timing)
+    return summarize(second.session, timing)
 
 
 def _note(text: str) -> None:
     print(f"momentum-lab: {text}", file=sys.stderr)
 
 
-def _session(scenario: Scenario) -> Session:
+def _fitting(chosen: Run, make: Callable[[Run], Made]) -> Made:
+    """What is made for a run, if its recording fits into memory."""
     try:
-        return Session(scenario)
+        return make(chosen)
     except MemoryError as error:
-        raise InputError("seconds", scenario.seconds, "a run whose recording fits into memory") from error
+        raise InputError(
+            "seconds", chosen.scenario.seconds, "a run whose recording fits into memory"
+        ) from error
 
 
-def _timed(session: Session) -> tuple[Timing, bool]:
-    """Run a session to its end or to Ctrl+C; whether it was the latter."""
+def _timed(session: Session, cue: Callable[[Session], None], ticks: int) -> tuple[Timing, bool]:
+    """Play a session to the end of its run or to Ctrl+C; whether it was the latter.
+
+    Raises:
+        SimulationError: it broke down before its first sample.
+    """
     with interruptible() as stopped, progress(session.scenario.name) as report:
 
         def proceed(fraction: float) -> bool:
             report(fraction)
             return not stopped.is_set()
 
-        timing = run_headless(session, proceed)
+        timing = run_headless(session, proceed, cue, ticks)
+    if timing.error is not None and not len(session.recording):
+        raise SimulationError(timing.error)
     return timing, stopped.is_set()
 
 

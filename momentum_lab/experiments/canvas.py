@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Picture
 
+from momentum_lab.finished import FinishedRun
 from momentum_lab.session import Session
 
 # The Okabe-Ito palette, each colour for the quantity that has it on the app's screen.
@@ -24,7 +25,7 @@ def canvas(title: str, rows: int, columns: int, size: tuple[float, float], **opt
     return picture, picture.subplots(rows, columns, squeeze=False, **options)
 
 
-def band(axes: Any, session: Session) -> None:
+def band(axes: Any, session: Session | FinishedRun) -> None:
     """Every push of a run as a grey band over time."""
     for push in session.pushes:
         axes.axvspan(push.start, push.start + push.duration, color="#dddddd", zorder=0, label="push")
@@ -56,7 +57,7 @@ def legend_below(picture: Any, axes: Any) -> None:
     picture.legend(named.values(), named.keys(), loc="outside lower center", ncols=len(named), fontsize=9)
 
 
-def heading(title: str, session: Session) -> str:
+def heading(title: str, session: Session | FinishedRun) -> str:
     """The title of a picture with the robot and the push it got."""
     pushes = "; ".join(f"{push.force:.0f} N for {push.duration:g} s" for push in session.pushes)
     return f"{title}\n{session.robot.spec.title}, {pushes or 'no push'}"

@@ -23,7 +23,7 @@ class FakeHandle:
     def on_update(self, callback: Callable[[Any], None]) -> None:
         self.callbacks.append(callback)
 
-    on_click = on_update
+    on_click = on_upload = on_update
 
     def remove(self) -> None:
         self.removed = True
@@ -63,6 +63,12 @@ class FakeGui:
 
     def add_button(self, label: str, visible: bool = True, **kw: Any) -> FakeHandle:
         return self._add(label, value=False, visible=visible, **kw)
+
+    def add_text(self, label: str, initial: str, **kw: Any) -> FakeHandle:
+        return self._add(label, value=initial, **kw)
+
+    def add_upload_button(self, label: str, **kw: Any) -> FakeHandle:
+        return self._add(label, value=None, **kw)
 
     def add_button_group(self, label: str, options: Any, **kw: Any) -> FakeHandle:
         return self._add(label, value=options[0], options=tuple(options), **kw)

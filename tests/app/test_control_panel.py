@@ -8,8 +8,9 @@ import msgspec
 import numpy as np
 import pytest
 
-from momentum_lab.app.control_panel import Choices, ControlPanel, changed_gains
+from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.playback import Playback
+from momentum_lab.app.tuning_panel import changed_gains
 from momentum_lab.control.computed_torque import ComputedTorqueGains
 from momentum_lab.control.controller import SLACKS
 from momentum_lab.control.gains import GainInfo, declared_gains
@@ -19,6 +20,7 @@ from momentum_lab.events import (
     SetAngularGoal,
     SetDirections,
     SetGain,
+    SetGains,
     SetMotion,
     SetPriority,
 )
@@ -32,10 +34,10 @@ DECLARED = declared_gains(ComputedTorqueGains())
 
 class Desk:
     def __init__(self) -> None:
-        self.gui, self.posted = FakeGui(), []
+        self.gui, self.posted, self.told = FakeGui(), [], []
         self.truth = Playback(Scenario("stand")).truth(1.0)
         choices = Choices(("talos", "g1"), ("stand", "one-leg"))
-        self.panel = ControlPanel(self.gui, self.posted.append, choices, self.truth)
+        self.panel = ControlPanel(self.gui, self.posted.append, self.told.append, choices, self.truth)
         self.panel.follow(self.truth)
 
     def slider(self, gain: GainInfo):
@@ -88,10 +90,15 @@ def test_widgets_follow_the_session(desk):
 def test_what_changed_is_told_and_can_be_undone(desk):
     gains = {**desk.truth.gains, "friction": 0.3}
     desk.panel.follow(msgspec.structs.replace(desk.truth, gains=gains))
-    assert "friction: 0.6 → 0.3" in desk.gui.html[-1].content
+    taken_back = desk.gui.widgets["friction as before"]
+    assert (taken_back.visible, taken_back.label) == (True, "friction: 0.6 → 0.3")
+    assert "Changed since chapter-like" in desk.gui.html[-1].content
+    taken_back.set_by_person(True)
+    assert desk.posted.pop() == SetGain("friction", DECLARED["friction"].default)
     desk.gui.widgets["Reset the gains"].set_by_person(True)
-    assert desk.posted == [SetGain("friction", DECLARED["friction"].default)]
+    assert desk.posted == [SetGains({"friction": DECLARED["friction"].default})]
     desk.panel.follow(desk.truth)
+    assert not taken_back.visible
     assert "defaults" in desk.gui.html[-1].content
 
 

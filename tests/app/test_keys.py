@@ -47,7 +47,7 @@ def desk() -> Desk:
 
 
 def test_what_each_key_does(desk):
-    for key in "PKJLR1234FMNG":
+    for key in "PKJLR12345FMNG":
         desk.press(key)
     assert desk.done == [
         "push",
@@ -55,7 +55,7 @@ def test_what_each_key_does(desk):
         StepOnce(1),
         StepOnce(20),
         Reset(),
-        *(f"tab {i}" for i in range(4)),
+        *(f"tab {i}" for i in range(5)),
         "ask",
         "keep",
         "same pushes",
@@ -67,7 +67,7 @@ def test_no_key_is_used_twice_and_none_that_widgets_need(desk):
     hotkeys = [hotkey for hotkey, _ in desk.commands.values() if hotkey]
     assert len(set(hotkeys)) == len(hotkeys)
     assert not set(hotkeys) & set("WASDQE")
-    assert set(hotkeys) == set("PKJLRB1234FMNGH")
+    assert set(hotkeys) == set("PKJLRB12345FMNGH")
 
 
 def test_a_key_that_is_held_down_acts_once(desk, monkeypatch):

@@ -24,6 +24,7 @@ from momentum_lab.scenario import Scenario
 
 EVENTS = [
     events.SetGain("friction", 0.5),
+    events.SetGains({"friction": 0.5, "linear_damping": 9.0}),
     events.SetPriority(0.25),
     events.SelectController("computed-torque"),
     events.SetDirections("linear+kz"),
@@ -36,6 +37,7 @@ EVENTS = [
     events.SetGroundSense("felt"),
     events.SetMismatch("mass_error", -0.1),
     events.ApplyPush(Push(force=217.0, body="head", shape="half-sine")),
+    events.ApplyPushes((Push(force=217.0, start=0.2), Push(velocity_change=0.1))),
     events.Reset(),
     events.Play(),
     events.Pause(),

@@ -1,0 +1,143 @@
+"""Files made of a run, in a process of their own: a picture that is drawn delays no tick and no other drawing."""
+
+from __future__ import annotations
+
+import multiprocessing
+import tempfile
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import msgspec
+
+from momentum_lab.app.wire import RunTaken, rows_of
+from momentum_lab.control.gains import with_gains
+from momentum_lab.control.registry import controller_entry
+from momentum_lab.errors import InputError, LabError
+from momentum_lab.finished import FinishedRun
+from momentum_lab.provenance import provenance
+from momentum_lab.recording import Layout, Recording, save_trace
+from momentum_lab.robot.model import RobotModel
+from momentum_lab.run_file import encoded
+from momentum_lab.session import Fall
+
+# A minute's table on a busy machine takes less, s.
+_PATIENCE = 180.0
+
+
+class _Made(msgspec.Struct, frozen=True):
+    """What came out: the content of a file, or why there is none."""
+
+    content: bytes
+    problem: str = ""
+
+
+def made_elsewhere(kind: str, taken: RunTaken) -> bytes:
+    """The content of a file about a run, made by another process.
+
+    Args:
+        kind: one of `MAKERS`.
+        taken: the run, with its recording.
+
+    Raises:
+        InputError: it cannot be made of this run.
+    """
+    context = multiprocessing.get_context("forkserver")
+    ours, theirs = context.Pipe()
+    process = context.Process(target=main, args=(theirs, kind), daemon=True, name="export")
+    process.start()
+    theirs.close()
+    try:
+        ours.send_bytes(msgspec.msgpack.encode(taken))
+        if not ours.poll(_PATIENCE):
+            raise InputError("download", kind, f"what can be made within {_PATIENCE:g} s")
+        answer = msgspec.msgpack.decode(ours.recv_bytes(), type=_Made)
+    except (EOFError, OSError) as error:
+        raise InputError("download", kind, "a run that fits into memory") from error
+    finally:
+        ours.close()
+        process.terminate()
+        process.join()
+    if answer.problem:
+        raise InputError("download", kind, answer.problem)
+    return answer.content
+
+
+def main(connection: Connection, kind: str) -> None:
+    """Take a run out of the pipe, put a file into it."""
+    with connection:
+        taken = msgspec.msgpack.decode(connection.recv_bytes(), type=RunTaken)
+        try:
+            answer = _Made(made(kind, taken))
+        except (LabError, MemoryError) as error:
+            answer = _Made(b"", str(error) or "a run that fits into memory")
+        connection.send_bytes(msgspec.msgpack.encode(answer))
+
+
+def made(kind: str, taken: RunTaken) -> bytes:
+    """The content of a file about a run.
+
+    Raises:
+        InputError: it cannot be made of this run.
+    """
+    return MAKERS[kind](finished(taken))
+
+
+def finished(taken: RunTaken) -> FinishedRun:
+    """The run as summaries and figures take it."""
+    robot = RobotModel.named(taken.run.scenario.robot)
+    layout = Layout.of(robot)
+    rows = rows_of(taken.rows, layout.width)
+    recording = Recording(layout, max(1, len(rows)))
+    for row in rows:
+        recording.next_row()[:] = row
+    return FinishedRun(
+        taken.run,
+        robot,
+        recording,
+        taken.time,
+        taken.controller,
+        taken.planner,
+        with_gains(controller_entry(taken.controller).gains, taken.gains),
+        taken.priority,
+        taken.pushes,
+        None if taken.fall is None else Fall(taken.fall.time, taken.fall.reason),
+        taken.failures,
+        taken.mismatch,
+        taken.com_speed,
+    )
+
+
+def _trace(run: FinishedRun) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "trace.npz"
+        save_trace(run.recording, provenance(run), path)
+        return path.read_bytes()
+
+
+def _table(run: FinishedRun) -> bytes:
+    from momentum_lab.experiments.run_table import table
+
+    return table(run)
+
+
+def _plots(run: FinishedRun) -> bytes:
+    from momentum_lab.experiments.run_plots import over_time, png
+
+    return png(over_time(run))
+
+
+def _report(run: FinishedRun) -> bytes:
+    from momentum_lab.experiments.run_report import report
+
+    return report(run)
+
+
+MAKERS: dict[str, Callable[[FinishedRun], bytes]] = {
+    "run": lambda run: encoded(run.run),
+    "trace": _trace,
+    "table": _table,
+    "plots": _plots,
+    "report": _report,
+}
+"""Kind -> what makes it; matplotlib is loaded by those that draw."""

@@ -1,0 +1,154 @@
+"""The share tab: the run as a code, an address or a file, and the way back from each of them."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import viser
+
+from momentum_lab.app import html, share_html
+from momentum_lab.app.exporter import made_elsewhere
+from momentum_lab.app.wire import Opened, RunTaken, Truth
+from momentum_lab.errors import LabError
+from momentum_lab.run_file import Run, decoded, encoded
+from momentum_lab.share_code import from_code, link, to_code
+
+_INTRODUCTION = (
+    "A run is its scenario and all that was done in it. Whoever opens it sees the same run, to the last bit."
+)
+_VIEW = "picture of the view (.png)"
+# What can be downloaded: kind and how its file name ends.
+_FILES = {
+    "report (.html)": ("report", "-report.html"),
+    "run file (.json)": ("run", ".json"),
+    "trace, every tick (.npz)": ("trace", ".npz"),
+    "table (.csv)": ("table", ".csv"),
+    "plots (.png)": ("plots", "-plots.png"),
+    _VIEW: ("view", "-view.png"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Sharing:
+    """What the share tab can ask for.
+
+    Attributes:
+        take: the run as it is now, with its recording or without.
+        open: starts a run.
+        tell: shows a person what was wrong.
+        send: lets the browser save a file of a name.
+        view: a picture of what the browser shows, as a PNG file.
+        url: where the lab is served.
+    """
+
+    take: Callable[[bool], RunTaken]
+    open: Callable[[Run], None]
+    tell: Callable[[str], None]
+    send: Callable[[str, bytes], None]
+    view: Callable[[], bytes]
+    url: str
+
+
+class SharePanel:
+    """The widgets of the share tab.
+
+    Args:
+        gui: where they go.
+        sharing: what they ask for.
+        address: the hidden text that holds the page's address when it carries a code.
+    """
+
+    def __init__(self, gui: viser.GuiApi, sharing: Sharing, address: Any) -> None:
+        self._sharing = sharing
+        self._busy = threading.Lock()
+        self._told = ""
+        gui.add_html(html.sentence(_INTRODUCTION))
+        make = gui.add_button("Make a code", icon=viser.Icon.QRCODE, hint="Of the run as it is now.")
+        self._code = gui.add_html("")
+        self._pasted = gui.add_text("code", "", hint="A code, or an address that ends in one.")
+        open_code = gui.add_button("Open the code", color="gray", icon=viser.Icon.FOLDER_OPEN)
+        upload = gui.add_upload_button(
+            "Open a run file",
+            color="gray",
+            icon=viser.Icon.UPLOAD,
+            mime_type=".json,.toml,.npz",
+            hint="A run file (.json, .toml) or a trace (.npz).",
+        )
+        self._opened = gui.add_html("")
+        self._what = gui.add_dropdown(
+            "file", tuple(_FILES), hint="All but the run file hold the last minute since the robot stood up."
+        )
+        self._download = gui.add_button("Download", color="gray", icon=viser.Icon.DOWNLOAD)
+        make.on_click(lambda _: self._attempt(self._make_code))
+        open_code.on_click(lambda _: self._attempt(lambda: self._open_code(self._pasted.value)))
+        upload.on_upload(lambda event: self._attempt(lambda: self._open_file(event.target.value)))
+        self._download.on_click(lambda _: self._attempt(self._save))
+        address.on_update(lambda event: self._arrived(event))
+
+    def follow(self, truth: Truth) -> None:
+        """Show how far a run is that has been opened."""
+        text = "" if truth.opened is None else html.sentence(opened_words(truth.opened))
+        if text != self._told:
+            self._told = self._opened.content = text
+
+    def _attempt(self, act: Callable[[], None]) -> None:
+        """Do something once at a time; what is wrong with it is told, and the session goes on."""
+        if not self._busy.acquire(blocking=False):
+            self._sharing.tell("One thing at a time: the last file is still being made.")
+            return
+        try:
+            act()
+        except LabError as error:
+            self._sharing.tell(str(error))
+        finally:
+            self._busy.release()
+
+    def _make_code(self) -> None:
+        code = to_code(self._sharing.take(False).run)
+        self._code.content = share_html.code(code, link(self._sharing.url, code))
+
+    def _open_code(self, text: str) -> None:
+        self._sharing.open(from_code(text))
+
+    def _open_file(self, file: Any) -> None:
+        self._sharing.open(decoded(file.name, file.content))
+
+    def _arrived(self, event: Any) -> None:
+        if event.client is not None and event.target.value:
+            self._attempt(lambda: self._open_code(event.target.value))
+
+    def _save(self) -> None:
+        kind, end = _FILES[self._what.value]
+        self._download.disabled = True
+        try:
+            taken = self._sharing.take(kind not in ("run", "view"))
+            self._sharing.send(file_name(taken.run) + end, self._content(kind, taken))
+        finally:
+            self._download.disabled = False
+
+    def _content(self, kind: str, taken: RunTaken) -> bytes:
+        if kind == "view":
+            return self._sharing.view()
+        return encoded(taken.run) if kind == "run" else made_elsewhere(kind, taken)
+
+
+def file_name(run: Run) -> str:
+    """A name for files about a run: small letters, digits, hyphens."""
+    words = f"{run.scenario.name}-{run.scenario.robot.removesuffix('.toml').rpartition('/')[2]}"
+    return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")[:80] or "run"
+
+
+def opened_words(opened: Opened) -> str:
+    """How far an opened run is, in a sentence."""
+    if not opened.over:
+        return f"The opened run plays until {opened.seconds:.2f} s of its time."
+    bits = {
+        None: "Other things were done in it than in the original.",
+        True: "Its last sample has the same bits as the original.",
+        False: "Its last sample has other bits than the original: another version or machine made it.",
+    }
+    return f"The opened run ends here. {bits[opened.agrees]} Play goes on."

@@ -1,0 +1,40 @@
+"""momentum-lab report: a run as one HTML file."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from pathlib import Path
+
+from momentum_lab.cli.choices import chosen_run
+from momentum_lab.cli.run import played
+from momentum_lab.errors import InputError
+from momentum_lab.finished import FinishedRun
+from momentum_lab.recording import writable_file, write_whole
+
+
+def report(args: Namespace) -> int:
+    """Run a scenario or a code and write its report.
+
+    Returns:
+        0, or 1 if the simulation broke down on the way: the report then shows what there is.
+
+    Raises:
+        InputError: something that was typed cannot be used.
+        KeyboardInterrupt: Ctrl+C; no report is written.
+    """
+    if args.out is None:
+        raise InputError("--out", "nothing", "the path of an .html file")
+    chosen = chosen_run(args)
+    out = writable_file(Path(args.out))
+    if chosen.scenario.beside is not None:
+        print(f"momentum-lab: {out} shows the first robot; its code holds both", file=sys.stderr)
+    session, timing, stopped = played(chosen)
+    if stopped:
+        raise KeyboardInterrupt
+
+    from momentum_lab.experiments.run_report import report as written  # loads matplotlib
+
+    write_whole(out, written(FinishedRun.of(session)))
+    print(f"report: {out}")
+    return 0 if timing.error is None else 1

@@ -1,0 +1,98 @@
+"""What remains of a run when its session is elsewhere or gone: enough for summaries, figures and reports."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from momentum_lab.events import LoggedEvent
+from momentum_lab.physics.mismatch import Mismatch
+from momentum_lab.physics.push import Push
+from momentum_lab.recording import Recording
+from momentum_lab.robot.model import RobotModel
+from momentum_lab.run_file import Run, run_of
+from momentum_lab.scenario import Scenario
+from momentum_lab.session import Fall, Session, stance_of
+
+
+@dataclass(frozen=True, slots=True)
+class FinishedRun:
+    """A run that has been played, since its robot last stood up.
+
+    Attributes:
+        run: scenario and events; enough to play it again.
+        robot: who was pushed.
+        recording: what happened.
+        time: how long it has lasted, s.
+        controller: who kept the balance in the end.
+        planner: what made the momentum rates in the end.
+        gains: all its gains in the end, an instance of the controller's dataclass.
+        priority: in the end, 0 linear, 1 angular.
+        pushes: all pushes, sized.
+        fall: when and why the robot has fallen; None: it has not.
+        solver_failures: ticks on which the fallback torque was used.
+        mismatch: how the real robot differed from its model in the end.
+        com_speed: of the CoM against the ground under the feet at the last sample, m/s.
+    """
+
+    run: Run
+    robot: RobotModel
+    recording: Recording
+    time: float
+    controller: str
+    planner: str
+    gains: Any
+    priority: float
+    pushes: tuple[Push, ...]
+    fall: Fall | None
+    solver_failures: int
+    mismatch: Mismatch
+    com_speed: float
+
+    @classmethod
+    def of(cls, session: Session) -> FinishedRun:
+        """What a session has done so far; it shares the session's recording."""
+        return cls(
+            run_of(session),
+            session.robot,
+            session.recording,
+            session.time,
+            session.controller,
+            session.planner,
+            session.gains,
+            session.priority,
+            session.pushes,
+            session.fall,
+            session.solver_failures,
+            session.mismatch,
+            com_speed(session),
+        )
+
+    @property
+    def scenario(self) -> Scenario:
+        """What was decided before the run."""
+        return self.run.scenario
+
+    @property
+    def ticks(self) -> int:
+        """How long it has lasted since its session began."""
+        return self.run.ticks
+
+    @property
+    def log(self) -> tuple[LoggedEvent, ...]:
+        """What was done in it."""
+        return self.run.events
+
+    @property
+    def stance(self) -> tuple[int, ...]:
+        """The feet it stood on."""
+        return stance_of(self.robot, self.run.scenario.stance)
+
+
+def com_speed(session: Session) -> float:
+    """Speed of the CoM against the ground under the feet at the last sample, m/s."""
+    latest = session.recording.latest
+    moving = session.ground.at(latest.number("time")).velocity[list(session.stance), :3].mean(axis=0)
+    return float(np.linalg.norm(latest["com_velocity"] - moving))

@@ -1,0 +1,79 @@
+"""Files about a run that plays: each made in another process, each the session's own numbers."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from momentum_lab.app.exporter import finished, made, made_elsewhere
+from momentum_lab.app.link import warm_up
+from momentum_lab.app.playback import Playback
+from momentum_lab.app.snapshot import encoded
+from momentum_lab.app.wire import RunTaken, packed, unpacked_answer
+from momentum_lab.errors import InputError
+from momentum_lab.events import ApplyPush
+from momentum_lab.physics.push import Push
+from momentum_lab.recording import load_trace
+from momentum_lab.run_file import decoded, run_of_trace
+from momentum_lab.scenario import Scenario
+
+
+@pytest.fixture(scope="module")
+def playback() -> Playback:
+    playback = Playback(Scenario("s", robot="g1", gains={"friction": 0.5}))
+    playback.take(ApplyPush(Push(force=40.0)))
+    playback.tick(60)
+    return playback
+
+
+@pytest.fixture(scope="module")
+def taken(playback) -> RunTaken:
+    return playback.taken(recording=True)
+
+
+def test_a_run_goes_through_the_pipe(taken):
+    assert unpacked_answer(packed(taken)) == taken
+
+
+def test_what_comes_out_is_the_session(playback, taken):
+    run, session = finished(taken), playback.session
+    assert np.array_equal(run.recording.rows(), session.recording.rows(), equal_nan=True)
+    assert (run.gains, run.pushes, run.time) == (session.gains, session.pushes, session.time)
+    assert (run.controller, run.planner, run.fall, run.stance) == (
+        session.controller,
+        session.planner,
+        None,
+        session.stance,
+    )
+
+
+def test_a_trace_made_elsewhere(playback, taken):
+    warm_up()
+    trace = load_trace(io.BytesIO(made_elsewhere("trace", taken)), "trace.npz")
+    assert np.array_equal(trace.columns["com"], playback.session.recording.column("com"))
+    assert run_of_trace(trace) == taken.run
+
+
+def test_every_other_kind(taken):
+    assert decoded("r.json", made("run", taken)) == taken.run
+    assert made("table", taken).startswith(b"time,q.0,")
+    assert Image.open(io.BytesIO(made("plots", taken))).format == "PNG"
+
+
+def test_what_cannot_be_made_is_told():
+    warm_up()
+    empty = Playback(Scenario("s", robot="g1")).taken(recording=False)
+    with pytest.raises(InputError, match=r"^download: got report; allowed: .*at least one tick"):
+        made_elsewhere("report", empty)
+
+
+def test_a_picture_is_on_white():
+    pixels = np.zeros((4, 6, 4), dtype=np.uint8)
+    pixels[:2] = (10, 20, 30, 255)
+    picture = np.array(Image.open(io.BytesIO(encoded(pixels))))
+    assert picture.shape == (4, 6, 3)
+    assert picture[0, 0].tolist() == [10, 20, 30]
+    assert picture[3, 5].tolist() == [255, 255, 255]

@@ -1,0 +1,121 @@
+"""The share tab: codes and files out and in, and what is wrong told without losing anything."""
+
+from __future__ import annotations
+
+import re
+from types import SimpleNamespace
+
+import pytest
+
+from momentum_lab.app.playback import Playback
+from momentum_lab.app.share_panel import SharePanel, Sharing, file_name, opened_words
+from momentum_lab.app.wire import Opened
+from momentum_lab.events import ApplyPush, Pause, SetPriority
+from momentum_lab.physics.push import Push
+from momentum_lab.run_file import Run, decoded, encoded
+from momentum_lab.scenario import Scenario
+from momentum_lab.share_code import from_code, to_code
+from tests.app.fakes import FakeGui, FakeHandle
+
+URL = "http://127.0.0.1:8080"
+
+
+class Desk:
+    def __init__(self) -> None:
+        self.gui, self.told, self.opened, self.sent = FakeGui(), [], [], {}
+        self.playback = Playback(Scenario("My run!", robot="g1"))
+        self.address = FakeHandle(value="")
+        sharing = Sharing(
+            self.playback.taken,
+            self.opened.append,
+            self.told.append,
+            lambda name, content: self.sent.update({name: content}),
+            lambda: b"picture",
+            URL,
+        )
+        self.panel = SharePanel(self.gui, sharing, self.address)
+
+    def do(self, label: str, value: object = True) -> None:
+        self.gui.widgets[label].set_by_person(value)
+
+    @property
+    def code(self) -> str:
+        return re.findall('data-code="([^"]+)"', self.gui.html[1].content)[0]
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+def test_a_code_holds_all_that_was_done_and_what_waits(desk):
+    desk.playback.take(ApplyPush(Push(force=20.0)))
+    desk.playback.tick(30)
+    desk.playback.take(Pause())
+    desk.playback.take(SetPriority(0.5))
+    desk.do("Make a code")
+    run = from_code(desk.code)
+    assert [(entry.tick, entry.event) for entry in run.events] == [
+        (1, ApplyPush(Push(force=20.0))),
+        (31, SetPriority(0.5)),
+    ]
+    assert run.ticks == 31
+    assert f'value="{URL}/?run={desk.code}"' in desk.gui.html[1].content
+
+
+def test_codes_are_opened_from_the_field_and_from_the_address(desk):
+    run = Run(Scenario("other"))
+    desk.gui.widgets["code"].value = to_code(run)
+    desk.do("Open the code")
+    desk.address.set_by_person(to_code(run))
+    assert desk.opened == [run, run]
+    assert desk.told == []
+
+
+def test_files_are_opened(desk):
+    run = Run(Scenario("other"))
+    desk.do("Open a run file", SimpleNamespace(name="run.json", content=encoded(run)))
+    assert desk.opened == [run]
+
+
+@pytest.mark.parametrize(
+    ("label", "value", "message"),
+    [
+        ("Open the code", "nonsense", "code: got nonsense; allowed: a code that this lab has made"),
+        ("Open a run file", SimpleNamespace(name="x.npz", content=b"PK"), "recording: got x.npz"),
+        (
+            "Open a run file",
+            SimpleNamespace(name="x.doc", content=b"PK"),
+            "run file: got x.doc; allowed: a file",
+        ),
+    ],
+)
+def test_what_is_no_run_is_told(desk, label, value, message):
+    desk.gui.widgets["code"].value = "nonsense"
+    desk.do(label, value)
+    assert desk.told[0].startswith(message)
+    assert desk.opened == []
+    desk.do("Make a code")  # nothing is stuck
+    assert from_code(desk.code).scenario.name == "My run!"
+
+
+def test_the_run_file_and_the_picture_are_sent(desk):
+    desk.gui.widgets["file"].value = "run file (.json)"
+    desk.do("Download")
+    desk.gui.widgets["file"].value = "picture of the view (.png)"
+    desk.do("Download")
+    assert list(desk.sent) == ["my-run-g1.json", "my-run-g1-view.png"]
+    assert decoded("r.json", desk.sent["my-run-g1.json"]).ticks == 1
+    assert not desk.gui.widgets["Download"].disabled
+
+
+def test_names_of_files_are_harmless():
+    assert file_name(Run(Scenario("../../etc", robot="/home/me/My Robot.toml"))) == "etc-my-robot"
+    assert file_name(Run(Scenario("ä", robot="ß"))) == "run"
+
+
+def test_how_far_an_opened_run_is():
+    assert "until 8.10 s" in opened_words(Opened(8.1))
+    assert "same bits" in opened_words(Opened(8.1, True, True))
+    assert "other bits" in opened_words(Opened(8.1, True, False))
+    assert "Other things were done" in opened_words(Opened(8.1, True, None))
