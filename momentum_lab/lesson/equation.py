@@ -12,6 +12,7 @@ import numpy as np
 
 from momentum_lab.errors import InputError
 from momentum_lab.experiments.measured import times, upright
+from momentum_lab.lesson.parsing import parsed
 from momentum_lab.session import Session
 
 _GREEK = {
@@ -87,7 +88,7 @@ def sides(text: str) -> tuple[ast.expr, ast.expr]:
         InputError: the text holds something that an equation may not.
     """
     try:
-        left, right = (ast.parse(side.strip(), mode="eval").body for side in text.split("="))
+        left, right = (parsed(side.strip(), mode="eval").body for side in text.split("="))
     except (SyntaxError, ValueError) as error:
         raise InputError("equation", text, _ALLOWED) from error
     for side in (left, right):

@@ -13,6 +13,7 @@ from typing import Any
 from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import InputError, LabError, LessonError
+from momentum_lab.lesson.parsing import parsed
 from momentum_lab.lesson.parts import (
     CONTROLS,
     Bound,
@@ -146,7 +147,7 @@ def located(path: Path, words: str) -> Iterator[None]:
 
 def _tree(path: Path) -> ast.Module:
     try:
-        tree = ast.parse(path.read_text(encoding="utf-8"), str(path))
+        tree: ast.Module = parsed(path.read_text(encoding="utf-8"), str(path))
         # A few errors are found by the compiler only, such as a return outside a function.
         compile(tree, str(path), "exec")
         return tree
