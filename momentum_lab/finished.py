@@ -14,7 +14,8 @@ from momentum_lab.recording import Recording
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.run_file import Run, run_of
 from momentum_lab.scenario import Scenario
-from momentum_lab.session import Fall, Session, stance_of
+from momentum_lab.session import Fall, Session
+from momentum_lab.start import stance_of
 
 
 @dataclass(frozen=True, slots=True)

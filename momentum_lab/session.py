@@ -10,7 +10,6 @@ from typing import Any
 
 import msgspec
 import numpy as np
-import pinocchio as pin
 
 from momentum_lab.control.controller import Controller, ControlOutput
 from momentum_lab.control.fallback import limp
@@ -21,7 +20,7 @@ from momentum_lab.control.motion import AngularGoal, MovingGoal, reach_of
 from momentum_lab.control.planner import OWN
 from momentum_lab.control.registry import check_planner, controller_entry
 from momentum_lab.control.standing import StandingGoal
-from momentum_lab.errors import InputError, ScenarioError, SimulationError
+from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.events import (
     ApplyPush,
     ApplyPushes,
@@ -55,10 +54,10 @@ from momentum_lab.physics.sensors import measured
 from momentum_lab.physics.simulator import Step
 from momentum_lab.recording import Layout, Recording, Sample
 from momentum_lab.robot.model import RobotModel
-from momentum_lab.robot.posture import standing_posture
 from momentum_lab.robot.state import Dynamics, State
 from momentum_lab.scenario import Scenario
-from momentum_lab.terrain import standing_places, start_of, terrain
+from momentum_lab.start import stance_of, standing_state, starting_state
+from momentum_lab.terrain import terrain
 
 # A robot whose CoM is lower than this part of its standing height has fallen.
 _FALLEN_HEIGHT = 0.6
@@ -141,10 +140,8 @@ class Session:
         self.stance = stance_of(self.robot, scenario.stance)
         self._weight = self.robot.mass * GRAVITY
         self._ground = self._first_ground = terrain(scenario, self.robot, self.stance)
-        self._start = _lifted(
-            _starting_state(self.robot, scenario, scenario.com_outside), scenario.drop_height
-        )
-        home = self.robot.at(_starting_state(self.robot, scenario, None))
+        self._start = starting_state(self.robot, scenario)
+        home = self.robot.at(standing_state(self.robot, scenario))
         self._standing_height = float(home.com_in_world[2]) - self._ground.at(0.0).height
         self._goal = StandingGoal(self.robot, home, self.stance)
         self._home, self._tick_of_run = home, 0
@@ -478,33 +475,3 @@ def _checked_priority(value: float) -> float:
             "priority", value, "a number from 0 (keep linear momentum) to 1 (keep angular momentum)"
         )
     return float(value)
-
-
-def stance_of(robot: RobotModel, names: tuple[str, ...]) -> tuple[int, ...]:
-    """Indices of the feet with these names; of all feet without any.
-
-    Raises:
-        ScenarioError: the robot has no such foot.
-    """
-    for name in names:
-        if name not in robot.foot_names:
-            raise ScenarioError("stance", name, f"feet among {', '.join(robot.foot_names)}")
-    return tuple(i for i, name in enumerate(robot.foot_names) if not names or name in names)
-
-
-def _starting_state(robot: RobotModel, scenario: Scenario, com_outside: float | None) -> State:
-    """The standing posture, or one that leans out, moved and turned to where the scenario starts."""
-    places = standing_places(scenario, robot) if scenario.ground else None
-    q = standing_posture(robot, scenario.stance or robot.foot_names, com_outside, places).copy()
-    start = start_of(scenario)
-    q[:3] = start.act(q[:3])
-    rotation = start.rotation @ pin.Quaternion(q[3:7]).toRotationMatrix()
-    q[3:7] = pin.Quaternion(rotation).normalized().coeffs()
-    return State(q, np.zeros(robot.nv))
-
-
-def _lifted(state: State, height: float) -> State:
-    """The same state with everything `height` (m) higher."""
-    q = state.q.copy()
-    q[2] += height
-    return State(q, state.v)

@@ -32,6 +32,7 @@ FLOORS: tuple[frozenset[str], ...] = (
             "observe",
             "recording",
             "session",
+            "start",
             "terrain",
             "timeline",
             "status",
