@@ -315,3 +315,9 @@ def test_claim_that_fails_ends_with_exit_code_1(tmp_path: Path, capsys: Output) 
 def test_folder_that_is_none_is_refused(tmp_path: Path, capsys: Output) -> None:
     assert main(["lesson", "1", "--headless", "--lessons", str(tmp_path / "none")]) == 2
     assert capsys.readouterr().err.startswith("momentum-lab: --lessons: got ")
+
+
+@pytest.mark.parametrize("name", ["-1", "1.0", "", "99"])
+def test_a_number_that_is_no_lesson_is_refused(name: str) -> None:
+    with pytest.raises(InputError, match="lesson"):
+        find_lesson(name)

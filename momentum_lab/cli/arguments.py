@@ -323,7 +323,9 @@ def _folder_argument(parser: _Parser) -> None:
 def _figure_arguments(parser: _Parser) -> None:
     parser.add_argument("name", nargs="?", default="", metavar="NAME", help="which figure, such as fig8")
     parser.add_argument("--robot", metavar="R", help="a name, or a robot's .toml file")
-    parser.add_argument("--out", metavar="DIR", help="folder for NAME.png, NAME.csv and NAME.json")
+    parser.add_argument(
+        "--out", metavar="DIR", help="folder for NAME.png, NAME.csv and NAME.json; has to be given"
+    )
 
 
 def _list_arguments(parser: _Parser) -> None:

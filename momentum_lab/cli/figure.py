@@ -30,12 +30,12 @@ def figure(args: Namespace) -> int:
         KeyboardInterrupt: Ctrl+C.
     """
     chosen = figure_named(args.name)
-    if args.out is None:
-        raise InputError("--out", "nothing", "a folder for the three files")
     scenarios = chosen.scenarios(args.robot)
     for scenario in scenarios.values():
-        # An unknown robot is told before a folder is made for it.
+        # An unknown robot is told before a folder is asked for or made for it.
         load_spec(scenario.robot)
+    if not args.out:
+        raise InputError("--out", "nothing", "a folder for the three files")
     folder = writable_folder(Path(args.out), chosen.name)
     played = _played(chosen, scenarios)
     claims = judged(chosen, played)

@@ -78,7 +78,7 @@ def find_lesson(name: str, folder: Path = LESSONS) -> Path:
     wanted = _plain(name)
     for path in files:
         number, _, slug = path.stem.partition("_")
-        if wanted in (str(int(number)), number, _plain(path.stem), _plain(slug)):
+        if name.strip() in (str(int(number)), number) or wanted in (_plain(path.stem), _plain(slug)):
             return path
     for path in files:
         if wanted == _plain(headline(path)[0]):
