@@ -153,11 +153,13 @@ BAD_VALUES = [
     ("bench --seconds 0", "--seconds: got 0; allowed: a number from 1 to 600 (s)"),
     (
         "list",
-        "list: got nothing; allowed: robots, controllers, planners, scenarios, lessons, figures, gains, presets",
+        "list: got nothing; allowed: robots, controllers, planners, motions, scenarios, lessons, figures, gains, "
+        "presets",
     ),
     (
         "list cats",
-        "list: got cats; allowed: robots, controllers, planners, scenarios, lessons, figures, gains, presets",
+        "list: got cats; allowed: robots, controllers, planners, motions, scenarios, lessons, figures, gains, "
+        "presets",
     ),
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
     (

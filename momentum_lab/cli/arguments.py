@@ -34,7 +34,17 @@ COMMANDS = (
     "robot-check",
     "bench",
 )
-KINDS = ("robots", "controllers", "planners", "scenarios", "lessons", "figures", "gains", "presets")
+KINDS = (
+    "robots",
+    "controllers",
+    "planners",
+    "motions",
+    "scenarios",
+    "lessons",
+    "figures",
+    "gains",
+    "presets",
+)
 _MAX_PORT = 65535
 _MAX_BENCH_SECONDS, _MAX_BENCH_MINUTES = 600.0, 60.0
 
@@ -117,7 +127,7 @@ def _parser() -> _Parser:
         ),
         (
             "list",
-            "what there is: robots, controllers, planners, scenarios, lessons, figures, gains, presets",
+            "what there is: robots, controllers, planners, motions, scenarios, lessons, figures, gains, presets",
             _list_arguments,
         ),
         ("equations", "how exactly the chapter's equations hold on a robot", _equations_arguments),

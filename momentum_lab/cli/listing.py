@@ -13,6 +13,7 @@ from rich.table import Table
 
 from momentum_lab.cli.arguments import KINDS
 from momentum_lab.control.gains import declared_gains
+from momentum_lab.control.motion import MOTIONS
 from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.presets import presets
 from momentum_lab.control.registry import CONTROLLERS, controller_entry
@@ -69,6 +70,11 @@ def planners() -> Things:
         {"name": name, "title": planner.title, "summary": planner.summary}
         for name, planner in PLANNERS.items()
     ]
+
+
+def motions() -> Things:
+    """All motions; which joints they move stands in a robot's file."""
+    return [{"name": name, "title": motion.title, "where": motion.where} for name, motion in MOTIONS.items()]
 
 
 def scenarios() -> Things:
@@ -131,6 +137,7 @@ _LISTS: dict[str, Callable[[], Things]] = {
     "robots": robots,
     "controllers": controllers,
     "planners": planners,
+    "motions": motions,
     "scenarios": scenarios,
     "figures": figures,
 }
