@@ -186,7 +186,6 @@ def test_a_scenario_carries_its_errors(tmp_path):
 
 def test_mujoco_has_the_heavier_robot_too(talos):
     """What the feet carry is 1.1 m g and what the CoM gains, and Eq. 20 holds with the heavier robot."""
-    pytest.importorskip("mujoco")
     session, _ = spied(talos, Mismatch(mass_error=0.1, torque_delay_ms=1.0), 800, engine="mujoco")
     column = session.recording.column
     carried = column("foot_wrench_measured")[:-1, :, 2].sum(axis=1).mean()
@@ -197,7 +196,6 @@ def test_mujoco_has_the_heavier_robot_too(talos):
 
 
 def test_mujoco_refuses_friction_of_joints_before_it_acts(talos):
-    pytest.importorskip("mujoco")
     said = r"^mismatch joint_friction: got 0\.05; allowed: 0 with the engine mujoco$"
     with pytest.raises(InputError, match=said):
         spied(talos, Mismatch(joint_friction=0.05), engine="mujoco")

@@ -26,7 +26,14 @@ def choices(truth: Truth) -> dict[str, str]:
         "friction of the ground": ", ".join(f"{value:g}" for value in dict.fromkeys(truth.friction)),
         "push": NOTHING if truth.first_push is None else push_in_words(truth.first_push),
         **{name.replace("_", " "): f"{value:g}" for name, value in truth.gains.items()},
+        **{f"model: {name.replace('_', ' ')}": f"{value:g}" for name, value in _errors(truth).items()},
     }
+
+
+def _errors(truth: Truth) -> dict[str, float]:
+    """Each model error by its name."""
+    errors: dict[str, float] = msgspec.structs.asdict(truth.mismatch)
+    return errors
 
 
 def differences(truths: Sequence[Truth]) -> dict[str, tuple[str, ...]]:
@@ -48,6 +55,7 @@ def with_choices(truth: Truth, chosen: Truth) -> Truth:
         motion=chosen.motion,
         angular_goal=chosen.angular_goal,
         ground_sense=chosen.ground_sense,
+        mismatch=chosen.mismatch,
         gains=chosen.gains,
     )
 

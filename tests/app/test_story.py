@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from momentum_lab.app.differences import differences, names_of
+from momentum_lab.app.differences import differences, names_of, with_choices
 from momentum_lab.app.ghost import Ghost, KeptRun
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.robots import LoadedRobot
@@ -13,6 +13,7 @@ from momentum_lab.app.story import Story
 from momentum_lab.beside import Beside
 from momentum_lab.events import ApplyPush
 from momentum_lab.headless import Timing
+from momentum_lab.physics.mismatch import Mismatch
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario, load_scenario
 from momentum_lab.summary import summarize
@@ -129,3 +130,12 @@ def test_the_ghost_stands_where_the_kept_robot_was(pushed):
     assert not base.visible
     ghost.remove()
     assert base.removed
+
+
+def test_a_wrong_model_is_a_difference():
+    exact, heavy = (
+        Playback(Scenario("stand", robot="g1", mismatch=mismatch)).truth(1.0)
+        for mismatch in (Mismatch(), Mismatch(mass_error=0.1))
+    )
+    assert differences([exact, heavy]) == {"model: mass error": ("0", "0.1")}
+    assert with_choices(exact, heavy).mismatch == heavy.mismatch
