@@ -122,7 +122,8 @@ class Comparison:
             self._side = SideScene(self._client, loaded, beside)
             self._side.see_through(settings.see_through)
         self._side.draw(beside, other.truth, settings)
-        self._side.name(names_of(first, other.truth), (sample["com"], beside["com"]))
+        names = other.names or names_of(first, other.truth)
+        self._side.name(names, (sample["com"], beside["com"]))
 
     def see_through(self, on: bool) -> None:
         """Whether marks inside a body show."""

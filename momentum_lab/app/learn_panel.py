@@ -304,6 +304,6 @@ def _way_on(walk: Walk) -> str:
     """What the button says that leads to the next step."""
     if walk.waits:
         return "Predict first"
-    if walk.step.kind == "play" and any(run not in walk.news.seen for run in walk.runs_to_play()):
+    if walk.step.kind == "play" and not walk.all_seen:
         return _SKIP
     return _FINISH if walk.last else _NEXT

@@ -63,6 +63,8 @@ class Playback:
     """
 
     session: Session
+    names: tuple[str, str] | None = None
+    """What to call the two robots, if not by what differs."""
 
     def __init__(self, first: Scenario | Run, robot: RobotModel | None = None) -> None:
         self._first = as_run(first)

@@ -125,11 +125,13 @@ class Other(msgspec.Struct, frozen=True):
         truth: what is the case with it.
         row: its latest sample, float64.
         history: its samples at the pace of the plots since the last frame, float64, oldest first.
+        names: what to call the two robots; None: by what differs.
     """
 
     truth: Truth
     row: bytes
     history: bytes
+    names: tuple[str, str] | None = None
 
 
 class Foreseen(msgspec.Struct, frozen=True):

@@ -34,6 +34,7 @@ from momentum_lab.app.wire import (
 )
 from momentum_lab.errors import LabError
 from momentum_lab.events import Event, Play, SetSpeed
+from momentum_lab.recording import Recording
 from momentum_lab.run_file import Run
 
 FRAMES_PER_SECOND = 40.0
@@ -146,7 +147,9 @@ class Worker:
             self._history.clear()
             self._other_history.clear()
         if playback is not before:
-            self._history += list(playback.session.recording.rows(HISTORY_EVERY)[-_MOST_HISTORY:].copy())
+            self._history += _rows(playback.session.recording)
+            if playback.beside is not None:
+                self._other_history += _rows(playback.beside.session.recording)
         if playback.run != run or playing != playback.playing or isinstance(event, Play | SetSpeed):
             self._pacer.start(self._clock(), playback.speed)
         if playback.run != run or playback.session.ticks != ticks:
@@ -213,7 +216,7 @@ class Worker:
         truth, shown = self._playback.beside_truth(first), self._playback.beside_shown
         if truth is None or shown is None:
             return None
-        return Other(truth, shown.row.tobytes(), _joined(self._other_history))
+        return Other(truth, shown.row.tobytes(), _joined(self._other_history), self._playback.names)
 
     def _rest(self, now: float) -> float:
         """How long nothing has to be done, s; an event ends it early."""
@@ -228,6 +231,10 @@ class Worker:
         if self._news and self._taken:
             return max(0.0, self._next_frame - now)
         return _LONG
+
+
+def _rows(recording: Recording) -> list[np.ndarray]:
+    return list(recording.rows(HISTORY_EVERY)[-_MOST_HISTORY:].copy())
 
 
 def _joined(rows: list[np.ndarray]) -> bytes:

@@ -285,7 +285,9 @@ def _choice_arguments(parser: _Parser) -> None:
         help="directions of momentum that are asked for: all, linear+kz, lx+ly, ...",
     )
     parser.add_argument("--planner", metavar="P", help="what makes the momentum rates that are asked for")
-    parser.add_argument("--motion", metavar="M", help="what the robot does: kick, reach, arm-swing, cat-left, ...")
+    parser.add_argument(
+        "--motion", metavar="M", help="what the robot does: kick, reach, arm-swing, cat-left, ..."
+    )
     parser.add_argument(
         "--angular-goal", metavar="G", help="angular momentum asked for: zero, or reference, the motion's own"
     )
