@@ -102,7 +102,8 @@ STEPS = (
         ),
     ),
     lab.Number(
-        "Now it stands on one leg and kicks. When the leg has most angular momentum, how much does the rest take back?",
+        "Now it stands on one leg and kicks. When the leg has most angular momentum, how much does the rest "
+        "take back?",
         "paid",
         0,
         150,
