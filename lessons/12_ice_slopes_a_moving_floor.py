@@ -87,9 +87,8 @@ STEPS = (
         ("cop", "told", "felt"),
     ),
     lab.Explain(
-        "To speed up with the bus, the CoM needs a force, and that force tilts the line from the CoP to the "
-        "CoM (Eq. 21). The CoP pays for the acceleration, and the sole is only so long: a harder bus needs a "
-        "step, or a handrail.",
+        "To speed up with the bus the CoM needs a force along the floor, and for that the CoP has to go behind it "
+        "(Eq. 21). A foot is only so long: a wilder bus takes a step, or a handrail.",
         "told",
         3.0,
         lab.Equation(
