@@ -278,7 +278,9 @@ def load_trace(path: Path | BinaryIO, name: str = "") -> Trace:
         arrays.pop("slack_names", None)
         meta = json.loads(str(arrays.pop("meta")))
     except (FileNotFoundError, IsADirectoryError, PermissionError) as error:
-        raise InputError("recording", name or path, f"a .npz file that can be read ({error.strerror})") from error
+        raise InputError(
+            "recording", name or path, f"a .npz file that can be read ({error.strerror})"
+        ) from error
     except (OSError, KeyError, ValueError, TypeError, EOFError, BadZipFile, zlib.error) as error:
         raise InputError(
             "recording", name or path, "a .npz file that this lab has written, whole and unchanged"
