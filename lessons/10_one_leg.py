@@ -74,7 +74,7 @@ STEPS = (
     lab.Explain(
         "The force does not point at the CoM but inward of it: the CMP lies outside the foot, and the body "
         "pays for the gap by rolling (Eq. 23). The slack is what the CoM's goal still has to do without, "
-        "{slack} at first. It is gone after {slack_gone}. Then the body comes back too, upright after "
+        "{slack} at most. It is gone after {slack_gone}. Then the body comes back too, upright after "
         "{roll_gone}.",
         "turning",
         0.2,

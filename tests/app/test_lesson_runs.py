@@ -95,7 +95,7 @@ def test_a_hand_goes_on_with_both(own: Playback, lesson: OpenLesson, begun_by) -
     room.take(SetPriority(0.3))
     room.stage.tick(100)
     first, second = room.stage.session, room.stage.beside.session
-    assert (first.priority, second.priority) == (0.3, 0.9)
+    assert (first.choices.priority, second.choices.priority) == (0.3, 0.9)
     assert first.pushes[-1] == second.pushes[-1]
     assert first.ticks == second.ticks
 
