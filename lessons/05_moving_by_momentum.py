@@ -11,9 +11,9 @@ from momentum_lab.lesson import spins
 
 RESOLVED = {"controller": "resolved-momentum", "seconds": 2.0}
 RUNS = {
-    "reach": lab.Run("reach", RESOLVED),
-    "reach_free": lab.Run("reach", {**RESOLVED, "controlled": "linear"}),
-    "kick": lab.Run("kick", RESOLVED),
+    "held": lab.Run("reach", RESOLVED),
+    "free": lab.Run("reach", {**RESOLVED, "controlled": "linear"}),
+    "kick_held": lab.Run("kick", RESOLVED),
     "kick_free": lab.Run("kick", {**RESOLVED, "controlled": "linear+kz"}),
 }
 Y, Z = 1, 2
@@ -48,14 +48,14 @@ def least_done(runs):
 MEASURES = {
     "done": lab.Measure(least_done, "%"),
     "com": lab.Measure(lambda runs: 1e3 * max(np.abs(com_moved(run)).max() for run in runs.values()), "mm"),
-    "back": lab.of("reach", hips_back, "mm"),
-    "turn": lab.of("reach", turn, "degrees", ".1f"),
-    "size": lab.of("reach", lambda s: abs(turn(s)), "degrees", ".1f"),
-    "free": lab.of("reach_free", lambda s: abs(turn(s)), "degrees", ".1f"),
-    "leg": lab.of("kick", lambda s: np.abs(spins.of_motion(s)[:, Y]).max(), "N m s", ".1f"),
-    "paid": lab.of("kick", lambda s: spins.taken_back(s, Y), "%"),
+    "back": lab.of("held", hips_back, "mm"),
+    "turn": lab.of("held", turn, "degrees", ".1f"),
+    "size": lab.of("held", lambda s: abs(turn(s)), "degrees", ".1f"),
+    "free": lab.of("free", lambda s: abs(turn(s)), "degrees", ".1f"),
+    "leg": lab.of("kick_held", lambda s: np.abs(spins.of_motion(s)[:, Y]).max(), "N m s", ".1f"),
+    "paid": lab.of("kick_held", lambda s: spins.taken_back(s, Y), "%"),
     "paid_free": lab.of("kick_free", lambda s: spins.taken_back(s, Y), "%"),
-    "swing": lab.of("kick", swing, "degrees", ".1f"),
+    "swing": lab.of("kick_held", swing, "degrees", ".1f"),
     "swing_free": lab.of("kick_free", swing, "degrees", ".1f"),
 }
 
@@ -74,7 +74,10 @@ STEPS = (
         ),
     ),
     lab.Play(
-        "Watch the hips of both; one may have angular momentum.", "reach", ("momenta",), beside="reach_free"
+        "Watch the hips of both. The second robot is free to have angular momentum.",
+        "held",
+        ("momenta",),
+        beside="free",
     ),
     lab.Compare(
         "The hips went back by {back} and turned by {size} to the right. Free to have angular momentum, they "
@@ -84,7 +87,7 @@ STEPS = (
     lab.Explain(
         "The hand passes the body on its right and so turns to the left about the CoM. For the sum to stay "
         "zero, the rest has to turn to the right (Eq. 16).",
-        "reach",
+        "held",
         0.8,
         lab.Equation(
             "k_z = k_arm + k_rest",
@@ -108,7 +111,7 @@ STEPS = (
         0,
         150,
     ),
-    lab.Play("Watch the trunk, not the leg.", "kick", ("momenta",), beside="kick_free"),
+    lab.Play("Watch the trunk, not the leg.", "kick_held", ("momenta",), beside="kick_free"),
     lab.Compare(
         "The leg had {leg}; the rest took {paid} of it back, {paid_free} where tipping was free. The pelvis "
         "swung by {swing} and {swing_free}. Zero angular momentum costs motion of the trunk.",
@@ -117,7 +120,7 @@ STEPS = (
 )
 
 CLAIMS = (
-    *(lab.Stands(label, f"the robot of {label}") for label in RUNS),
+    *(lab.Stands(label, f"the robot of the run {label}") for label in RUNS),
     lab.Bound("every motion is done", "done", low=70.0),
     lab.Bound("the CoM stays", "com", high=20.0),
     lab.Bound("the hips go back for the hand", "back", low=10.0),

@@ -10,8 +10,8 @@ from momentum_lab.app.playback import Playback
 from momentum_lab.app.wire import OpenRun
 from momentum_lab.errors import InputError, LabError
 from momentum_lab.events import Branch, Event, LookBack, Pause, Play, Reset, SetSpeed, StepOnce
+from momentum_lab.lesson import parts
 from momentum_lab.lesson.loader import load_lesson
-from momentum_lab.lesson.parts import Lesson
 from momentum_lab.lesson.playing import measured
 from momentum_lab.lesson.record import LessonRecord, recorded
 from momentum_lab.robot.model import RobotModel
@@ -30,7 +30,7 @@ class Classroom:
 
     def __init__(self, own: Playback) -> None:
         self._own = self.stage = own
-        self._lesson: Lesson | None = None
+        self._lesson: parts.Lesson | None = None
         self._robot: RobotModel | None = None
         self._runs: dict[str, RunPlayback] = {}
         self._watched: set[str] = set()
@@ -141,15 +141,23 @@ class Classroom:
         elif isinstance(event, Branch):
             self._branch(stage)
         else:
-            self._try_out(stage)
+            self._try_out()
             if not isinstance(event, Reset):
                 self.stage.take(event)
 
-    def _try_out(self, stage: RunPlayback) -> None:
+    def _try_out(self) -> None:
         """The start of a run without its pushes, for a hand to try; with the robot beside it, if that can be."""
+        stage = self._runs[self._to_try()]
         scenario = changed(stage.session.scenario, pushes=(), beside=stage.hand_over)
         self.stage = Playback(scenario, stage.session.robot)
         self._on_stage = ""
+
+    def _to_try(self) -> str:
+        """The run on stage, or the one of the step that it belongs to if it has none of its own."""
+        steps = () if self._lesson is None else self._lesson.steps
+        plays = [step.run for step in steps if isinstance(step, parts.Play)]
+        watched = [label for label in reversed(plays) if label in self._watched]
+        return self._on_stage if self._on_stage in plays or not watched else watched[0]
 
     def _branch(self, stage: RunPlayback) -> None:
         """A copy of a run at the instant that is looked at, for a hand to go on from; the same bits lead there."""

@@ -100,6 +100,19 @@ def test_a_hand_goes_on_with_both(own: Playback, lesson: OpenLesson, begun_by) -
     assert first.ticks == second.ticks
 
 
+def test_a_hand_after_a_run_without_a_step_goes_on_with_the_steps_own(own: Playback, tmp_path) -> None:
+    """A third run is only shown; what is tried is the pair of the step."""
+    third = (PAIR[0][0], PAIR[0][1].replace("})}", '}), "third": lab.Run("stand", {"seconds": 0.4})}'))
+    room = Classroom(own)
+    room.take(OpenLesson(str(written(tmp_path, third, *PAIR[1:])), "g1"))
+    played(room)
+    room.take(PlayRun("third"))
+    room.stage.tick(500)
+    assert room.stage.beside is None
+    room.take(ApplyPush(Push(force=50.0)))
+    assert room.stage.beside.beside == Beside(priority=0.9)
+
+
 def test_leaving_gives_the_second_robot_back(own: Playback, lesson: OpenLesson) -> None:
     room = Classroom(own)
     own.take(Pause())
