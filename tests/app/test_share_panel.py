@@ -31,6 +31,7 @@ class Desk:
             self.told.append,
             lambda name, content: self.sent.update({name: content}),
             lambda: b"picture",
+            self.film,
             URL,
         )
         self.panel = SharePanel(self.gui, sharing, self.address)
