@@ -21,7 +21,7 @@ from momentum_lab.app.world import add_floor, add_world
 from momentum_lab.finished import FinishedRun
 
 _CAPTION = (
-    '<div style="position:fixed;top:0.6em;left:0.8em;z-index:1;pointer-events:none;'
+    '<div style="position:fixed;top:0.6em;right:0.8em;z-index:1;pointer-events:none;'
     'font:14px/1.4 sans-serif;color:#333">{}</div>'
 )
 
