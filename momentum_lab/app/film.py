@@ -38,11 +38,10 @@ class _Shot:
 
     @classmethod
     def of(cls, camera: viser.CameraHandle) -> _Shot:
-        """What a tab's camera sees now, seen below the floor."""
-        width, height = camera.image_width, camera.image_height
-        scale = min(1.0, _LARGEST[0] / width, _LARGEST[1] / height)
-        even = [2 * max(1, round(scale * side / 2)) for side in (width, height)]
-        return cls(camera.position + _BELOW, camera.wxyz.copy(), camera.fov, *even)
+        """What a tab's camera sees now, seen below the floor, and more of it at the sides where docks hide it."""
+        height = min(camera.image_height, _LARGEST[1])
+        width, height = (2 * max(1, round(side / 2)) for side in (_LARGEST[0] / _LARGEST[1] * height, height))
+        return cls(camera.position + _BELOW, camera.wxyz.copy(), camera.fov, width, height)
 
 
 def film(client: viser.ClientHandle, reel: Reel, settings: ViewSettings, report: Report) -> bytes:

@@ -82,14 +82,14 @@ def reel(g1: RobotModel) -> Reel:
 
 
 def test_ffmpeg_gets_every_picture_and_what_it_makes_is_the_film(folder, reel):
-    log, (width, height) = folder / "log.json", (640, 400)
+    log, (width, height) = folder / "log.json", (712, 400)
     program(folder, FAKE.format(log=str(log), stride=width * height * 3))
     tab, fractions = Tab(), []
     assert film(tab, reel, ViewSettings(), fractions.append) == b"film\x01\x02\x03\x04"
     told = json.loads(log.read_text())
     assert told["bytes"] == 4 * width * height * 3
     words = " ".join(told["words"])
-    assert "-f rawvideo -pix_fmt rgb24 -s 640x400 -r 25 -i -" in words
+    assert "-f rawvideo -pix_fmt rgb24 -s 712x400 -r 25 -i -" in words
     assert words.endswith(".mp4")
     assert fractions == [0.25, 0.5, 0.75, 1.0]
 
@@ -98,7 +98,7 @@ def test_the_tab_looks_from_where_it_did_at_a_robot_below_the_floor(folder, reel
     program(folder, FAKE.format(log=str(folder / "log.json"), stride=1000))
     tab = Tab()
     film(tab, reel, ViewSettings(), lambda _: None)
-    assert {(asked["width"], asked["height"], asked["fov"]) for asked in tab.asked} == {(640, 400, 0.5)}
+    assert {(asked["width"], asked["height"], asked["fov"]) for asked in tab.asked} == {(712, 400, 0.5)}
     studio = tab.scene.nodes["/film"]
     for asked in tab.asked:
         assert asked["position"] - studio.position == pytest.approx(tab.camera.position)
