@@ -90,7 +90,8 @@ def _look(server: viser.ViserServer, reel: Reel) -> None:
     """Stand where everything that happens is seen."""
     layout = reel.robot.layout
     com = reel.rows[:, layout.slices["com"]]
-    low, high = np.nanmin(com, axis=0), np.nanmax(com, axis=0)
+    com = com[np.isfinite(com).all(axis=1)]  # the last sample of a run that broke down is not
+    low, high = com.min(axis=0), com.max(axis=0)
     size = float(com[0, 2])
     view = wide_enough(VIEWS[START_VIEW], (high - low)[:2] / size)
     target, position = camera_pose(view, size, 0.5 * (low + high)[:2], USUAL_ASPECT)
