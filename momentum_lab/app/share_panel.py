@@ -13,14 +13,13 @@ import viser
 from momentum_lab.app import html, share_html
 from momentum_lab.app.exporter import made_elsewhere
 from momentum_lab.app.wire import Opened, RunTaken, Truth
-from momentum_lab.errors import InputError, LabError
+from momentum_lab.errors import LabError
 from momentum_lab.run_file import Run, decoded, encoded
 from momentum_lab.share_code import from_code, link, to_code
 
 _INTRODUCTION = (
     "A run is its scenario and all that was done in it. Whoever opens it sees the same run, to the last bit."
 )
-_STOPPED = InputError("film", "stopped", "one that is waited for")
 # What can be downloaded: kind and how its file name ends.
 _FILES = {
     "report (.html)": ("report", "-report.html"),
@@ -85,7 +84,9 @@ class SharePanel:
         )
         self._opened = gui.add_html("")
         self._what = gui.add_dropdown(
-            "file", tuple(_FILES), hint="All but the run file hold the last minute since the robot stood up."
+            "file",
+            tuple(_FILES),
+            hint="All but the run file hold the last minute since the robot stood up, and of two robots the first.",
         )
         self._download = gui.add_button("Download", color="gray", icon=viser.Icon.DOWNLOAD)
         self._progress = gui.add_html("", visible=False)
@@ -155,7 +156,7 @@ class SharePanel:
 
         def report(fraction: float) -> None:
             if self._stopped.is_set():
-                raise _STOPPED
+                raise LabError("The film was stopped.")
             percent = int(100.0 * fraction)
             if percent not in percents:
                 percents.add(percent)

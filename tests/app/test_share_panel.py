@@ -138,7 +138,7 @@ def test_a_film_can_be_stopped_and_taken_again(desk):
     desk.do("Download")
     assert len(desk.lines) == 1
     assert desk.sent == {}
-    assert [words.split(";")[0] for words in desk.told] == ["film: got stopped"]
+    assert desk.told == ["The film was stopped."]
     desk.stops = False
     desk.do("Download")
     assert list(desk.sent) == ["my-run-g1.mp4"]
