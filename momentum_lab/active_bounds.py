@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -11,6 +12,7 @@ import pinocchio as pin
 
 from momentum_lab.control.acceleration_terms import BEFORE_THE_STOP
 from momentum_lab.control.controller import SLACKS
+from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.sole_bounds import (
     FRICTION,
     HEEL,
@@ -25,16 +27,20 @@ from momentum_lab.control.sole_bounds import (
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.recording import Sample
 from momentum_lab.robot.model import RobotModel
+from momentum_lab.session import Session
 
 ACTIVE = 0.99
 """A bound counts as active from this part of its limit on; for a CoP that is a millimetre of a large sole."""
 
+TORQUE = "torque limit"
 # A foot that carries less than this part of the weight only touches.
 _CARRIES = 2e-3
 # A joint counts as stopped when it is this part of its range from where controllers brake it.
 _NEAR = 0.01
 # A slack that is smaller than this is none, m/s^2 and rad/s^2.
 _LEAST_SLACK = 0.01
+# Of a run every sample in so much time is looked at, s.
+_LOOK = 0.005
 _NO_LOAD = "no load"
 # The ground's own bounds by their names in `used_of_ground`: there, the foot does not stay as it is.
 _OF_GROUND = {
@@ -130,7 +136,7 @@ def bounds_of(sample: Sample, situation: Situation) -> Bounds:
 
 
 def goals_of(sample: Sample) -> tuple[Goal, ...]:
-    """Sizes of both momentum rates, N and N m, and the CoP ahead of and to the left of the feet's middle, mm."""
+    """Sizes of both momentum rates, N and N m, and the CoP ahead and to the left of the middle of what carries, mm."""
     asked, granted = sample["momentum_rate_desired"], sample["momentum_rate_admissible"]
     rates = [
         _sizes("linear momentum rate", "N", asked[:3], granted[:3]),
@@ -138,7 +144,8 @@ def goals_of(sample: Sample) -> tuple[Goal, ...]:
     ]
     turn = heading_of(sample)
     ahead, left = (math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))
-    middle = sample["sole_pose"][:, :2].mean(axis=0)
+    carrying = sample["foot_wrench_measured"][:, 2] > 0.0
+    middle = sample["sole_pose"][carrying if carrying.any() else slice(None), :2].mean(axis=0)
     cops = [1e3 * (sample[name] - middle) for name in ("cop_desired", "cop_admissible")]
     for name, axis in (("CoP ahead", ahead), ("CoP to the left", left)):
         wanted, given = (float(cop @ axis) for cop in cops)
@@ -155,8 +162,8 @@ def slacks_of(sample: Sample) -> tuple[tuple[str, float, str], ...]:
     )
 
 
-def carrying_feet(wrenches: np.ndarray, mass: float) -> tuple[int, ...]:
-    """The feet that press on the ground, as indices.
+def pressed_feet(wrenches: np.ndarray, mass: float) -> tuple[int, ...]:
+    """The feet that the ground carries, as indices.
 
     Args:
         wrenches: of the ground on the feet, world axes (F, 6), N and N m.
@@ -179,11 +186,26 @@ def in_words(active: Iterable[Active]) -> str:
     return "; ".join(f"{holder}: {', '.join(words)}" for holder, words in held.items())
 
 
+def held_for(session: Session) -> dict[Active, float]:
+    """How long each bound was active in a recording, s, the longest first; gains and controller as they are now."""
+    every = max(1, round(_LOOK / session.scenario.timestep))
+    layout, ground = session.recording.layout, session.ground
+    choices, times = session.choices, Counter[Active]()
+    gains = {name: float(getattr(choices.gains, name)) for name in declared_gains(choices.gains)}
+    for row in session.recording.rows(every):
+        sample = Sample.of(layout, row)
+        friction = tuple(ground.friction(sample.number("time")).tolist())
+        scale = choices.mismatch.torque_scale
+        situation = Situation(session.robot, choices.controller, gains, friction, scale)
+        times.update(bounds_of(sample, situation).active)
+    return {bound: count * every * session.scenario.timestep for bound, count in times.most_common()}
+
+
 def _feet(sample: Sample, situation: Situation) -> tuple[tuple[Active, ...], ...]:
     """What holds each foot: its controller's trust, then the ground."""
     robot = situation.robot
     asked, measured = sample["foot_wrench_admissible"], sample["foot_wrench_measured"]
-    counted, pressing = carrying_feet(asked, robot.mass), carrying_feet(measured, robot.mass)
+    counted, pressing = pressed_feet(asked, robot.mass), pressed_feet(measured, robot.mass)
     trust = trust_of(situation.controller, situation.gains, robot.mass * GRAVITY, len(counted))
     poses = [pin.XYZQUATToSE3(pose) for pose in sample["sole_pose"]]
     found = []
@@ -220,7 +242,7 @@ def _joints(sample: Sample, situation: Situation) -> tuple[Active, ...]:
     reach = BEFORE_THE_STOP + _NEAR * (robot.position_upper - robot.position_lower)
     ends = (angle <= robot.position_lower + reach) | (angle >= robot.position_upper - reach)
     fast = speed >= ACTIVE * robot.model.velocityLimit[6:]
-    words = (("torque limit", motors), ("end of its range", ends), ("speed limit", fast))
+    words = ((TORQUE, motors), ("end of its range", ends), ("speed limit", fast))
     return tuple(
         Active(name, what)
         for joint, name in enumerate(robot.joint_names)

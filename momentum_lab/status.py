@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import pinocchio as pin
 
+from momentum_lab.active_bounds import TORQUE, Active, heading_of, pressed_feet
+from momentum_lab.control.sole_bounds import FRICTION, LEAST, TOES, TWIST
 from momentum_lab.fall import Fall
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.recording import Sample
@@ -29,8 +31,8 @@ _COLORS: dict[Kind, StatusColor] = {
 _LOST = 5e-3
 # A desired CoP closer than this to the granted one is the same, m.
 _SAME_POINT = 1e-3
-# A foot that carries less than this part of the weight only touches.
-_CARRIES = 2e-3
+# Bounds that stop forces wherever the CoP is.
+_OF_FORCES = frozenset({FRICTION, TWIST, LEAST, TORQUE})
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +56,7 @@ def status_of(
     fall: Fall | None = None,
     failure: str | None = None,
     stopped: str | None = None,
+    held: Sequence[Active] = (),
 ) -> Status:
     """The most important thing to say about a sample.
 
@@ -63,6 +66,7 @@ def status_of(
         fall: when and why it has fallen; None while it stands.
         failure: why the last solve had no answer; said when it concerns this sample.
         stopped: why the simulation has ended; None while it goes on.
+        held: the bounds that are active, if they are known.
     """
     if stopped is not None:
         return _status("stopped", f"stopped: {stopped}")
@@ -72,7 +76,7 @@ def status_of(
         return _status("solver", f"solver: {failure}")
     lost = lost_goals(sample, robot.mass)
     if lost:
-        return _status("border", f"{_where(sample)}: {lost}")
+        return _status("border", f"{_where(sample, held)}: {lost}")
     return _footing(sample, robot)
 
 
@@ -83,8 +87,7 @@ def carrying_feet(sample: Sample, mass: float) -> tuple[int, ...]:
         sample: the sample.
         mass: the robot's, kg.
     """
-    least = _CARRIES * mass * GRAVITY
-    return tuple(foot for foot, wrench in enumerate(sample["foot_wrench_measured"]) if wrench[2] > least)
+    return pressed_feet(sample["foot_wrench_measured"], mass)
 
 
 def lost_goals(sample: Sample, mass: float) -> str:
@@ -103,23 +106,20 @@ def lost_goals(sample: Sample, mass: float) -> str:
     return " and ".join(words)
 
 
-def _where(sample: Sample) -> str:
-    """Which border stops the CoP, seen from the robot."""
+def _where(sample: Sample, held: Sequence[Active]) -> str:
+    """Which border stops the CoP, seen from the robot, or else which bound stops the forces."""
     beyond = sample["cop_desired"] - sample["cop_admissible"]
     if not float(np.linalg.norm(beyond)) > _SAME_POINT:
-        return "foot forces at their limit"
-    heading = _heading(sample)
+        return next(
+            (f"{each.what} ({each.holder})" for each in held if each.what in _OF_FORCES),
+            "foot forces at their limit",
+        )
+    heading = heading_of(sample)
     forward = beyond[0] * math.cos(heading) + beyond[1] * math.sin(heading)
     left = beyond[1] * math.cos(heading) - beyond[0] * math.sin(heading)
     if abs(forward) >= abs(left):
-        return "CoP on the toes" if forward > 0.0 else "CoP on the heels"
+        return TOES if forward > 0.0 else "CoP on the heels"
     return f"CoP on the {'left' if left > 0.0 else 'right'} border"
-
-
-def _heading(sample: Sample) -> float:
-    """Mean direction of the soles about the vertical, rad."""
-    forward = sum(pin.XYZQUATToSE3(pose).rotation[:, 0] for pose in sample["sole_pose"])
-    return math.atan2(forward[1], forward[0])
 
 
 def _footing(sample: Sample, robot: RobotModel) -> Status:

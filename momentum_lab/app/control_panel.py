@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import viser
 
 from momentum_lab.app import html
+from momentum_lab.app.bounds_panel import BoundsPanel
 from momentum_lab.app.tuning_panel import TuningPanel
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
@@ -119,6 +120,7 @@ class ControlPanel:
             post,
         )
         gui.add_html(html.slider_ends("hold the CoM", "hold the posture"))
+        self.bounds = BoundsPanel(gui)
         self._slacks = gui.add_html("", visible=False)
         self._slacks_text = ""
         self._next = -math.inf

@@ -1,4 +1,4 @@
-"""How much of each bound of a foot a wrench uses: what a controller trusts the ground with, and what the ground bears.
+"""How much of each bound of a foot a wrench uses: of what a controller trusts in, and of what the ground bears.
 
 The part that is used is 1 at the bound: |f_t| / (mu f_z) for a friction cone, x / X for a CoP in a rectangle.
 """
@@ -19,7 +19,12 @@ from momentum_lab.momentum.support import inset_rectangle
 from momentum_lab.momentum.wrench import shift_wrench
 from momentum_lab.robot.model import Sole
 
-TOES, HEEL, LEFT, RIGHT = "CoP on the toes", "CoP on the heel", "CoP on the left edge", "CoP on the right edge"
+TOES, HEEL, LEFT, RIGHT = (
+    "CoP on the toes",
+    "CoP on the heel",
+    "CoP on the left edge",
+    "CoP on the right edge",
+)
 FRICTION, TWIST, LEAST = "friction limit", "friction limit of a twist", "normal force at its least"
 
 Used = dict[str, float]
@@ -102,19 +107,26 @@ def used_of_trust(wrench: np.ndarray, rotation: np.ndarray, sole: Sole, trust: T
 def used_of_ground(wrench: np.ndarray, rotation: np.ndarray, sole: Sole, friction: float) -> Used:
     """How much a wrench uses of what the ground itself bears: the whole sole, and the whole cone.
 
+    Force and twist share the friction: (|f_t| / (mu f_z))^2 + (|n| / (mu f_z r))^2 is 1 where a sole slides, turns,
+    or does both, with n the moment about the normal through the CoP and r the mean distance of the corners from it.
+
     Args:
         wrench: [f; n] about the sole's origin, world axes (6,), N and N m; it presses on the sole.
         rotation: axes of the sole in the world (3, 3).
         sole: the sole.
         friction: Coulomb coefficient of the ground.
     """
-    about = about_middle(wrench, rotation, sole)
-    slides = math.hypot(about[0], about[1]) / (friction * float(about[2]))
-    return {**used_edges(about, (sole.upper - sole.lower) / 2.0), FRICTION: slides}
+    about, half = about_middle(wrench, rotation, sole), (sole.upper - sole.lower) / 2.0
+    largest = friction * float(about[2])
+    slides, turns = (
+        math.hypot(about[0], about[1]) / largest,
+        abs(twist(about)) / (largest * _lever(about, half)),
+    )
+    return {**used_edges(about, half), FRICTION: math.hypot(slides, turns)}
 
 
 def used_edges(about: np.ndarray, half: np.ndarray) -> Used:
-    """How far the CoP of a wrench (6,) about a rectangle's middle is on its way to each edge; half its sides (2,), m."""
+    """How far the CoP of a wrench (6,) about a rectangle's middle is to each edge; half of its sides (2,), m."""
     x, y = -about[4] / about[2], about[3] / about[2]
     return {TOES: x / half[0], HEEL: -x / half[0], LEFT: y / half[1], RIGHT: -y / half[1]}
 
@@ -124,6 +136,23 @@ def about_middle(wrench: np.ndarray, rotation: np.ndarray, sole: Sole) -> np.nda
     middle = np.append((sole.lower + sole.upper) / 2.0, 0.0)
     local = (wrench.reshape(2, 3) @ rotation).ravel()
     return shift_wrench(local, np.zeros(3), middle)
+
+
+def _lever(about: np.ndarray, half: np.ndarray) -> float:
+    """Mean distance of a rectangle's corners from the CoP of a wrench (6,), weighed by the load of each, m.
+
+    The corners at (+-X, +-Y) carry (1 +- x / X) (1 +- y / Y) / 4 of f_z, the simplest loads with that CoP.
+    """
+    cop = np.array([-about[4], about[3]]) / about[2]
+    part = cop / half
+    return sum(
+        0.25
+        * (1.0 + i * part[0])
+        * (1.0 + j * part[1])
+        * math.hypot(i * half[0] - cop[0], j * half[1] - cop[1])
+        for i in (1, -1)
+        for j in (1, -1)
+    )
 
 
 def twist(about: np.ndarray) -> float:
