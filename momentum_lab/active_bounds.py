@@ -136,7 +136,7 @@ def bounds_of(sample: Sample, situation: Situation) -> Bounds:
 
 
 def goals_of(sample: Sample) -> tuple[Goal, ...]:
-    """Sizes of both momentum rates, N and N m, and the CoP ahead and to the left of the middle of what carries, mm."""
+    """Sizes of both momentum rates, N and N m, and the CoP seen from the middle of what carries, mm."""
     asked, granted = sample["momentum_rate_desired"], sample["momentum_rate_admissible"]
     rates = [
         _sizes("linear momentum rate", "N", asked[:3], granted[:3]),
