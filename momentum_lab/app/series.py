@@ -87,10 +87,14 @@ class History:
 
     def copy(self) -> History:
         """The same samples, to which nothing is added any more."""
-        other = History(self._robot, self._layout)
+        other = self.another()
         other._times, other._rows = list(self._times), list(self._rows)
         other._polygons, other._extents = list(self._polygons), [None] * len(self._extents)
         return other
+
+    def another(self) -> History:
+        """An empty one for a robot like this one's."""
+        return History(self._robot, self._layout)
 
     def clear(self) -> None:
         """Forget everything."""
