@@ -53,6 +53,6 @@ def _short(status: Status, truth: Truth) -> str:
     """What matters of a status where there is room for half a line."""
     if status.kind == "fallen" and truth.fall is not None:
         return f"fell at {truth.fall.time:.2f} s"
-    if status.kind in ("border", "solver", "stopped"):
-        return status.words.split(":")[0]
-    return status.words
+    if status.kind == "border":
+        return status.words.partition(": ")[2].replace("gives way", "short")
+    return status.words.partition(": ")[0]
