@@ -9,7 +9,7 @@ from html import escape
 
 import viser
 
-from momentum_lab.active_bounds import ACTIVE, Active, Bounds, Goal, Situation, bounds_of
+from momentum_lab.active_bounds import ACTIVE, Active, Bounds, Goal, Situation, bounds_of, in_words
 from momentum_lab.app.wire import Truth
 from momentum_lab.recording import Sample
 from momentum_lab.robot.model import RobotModel
@@ -60,7 +60,7 @@ def in_html(bounds: Bounds, feet: Iterable[str]) -> str:
     lines = [(f"{name} foot", _of_foot(held)) for name, held in zip(feet, bounds.feet, strict=True)]
     rows = "".join(
         f'<tr><td style="width:5.6em">{escape(name)}</td><td {_CUT} title="{escape(words)}">{escape(words)}</td></tr>'
-        for name, words in [*lines, ("joints", _of_joints(bounds.joints))]
+        for name, words in [*lines, ("joints", in_words(bounds.joints) or _NONE)]
     )
     goals = "".join(_goal(goal) for goal in bounds.goals)
     head = f"<tr><td></td><td {_RIGHT}>asked</td><td {_RIGHT}>granted</td><td {_RIGHT}>missing</td></tr>"
@@ -69,13 +69,6 @@ def in_html(bounds: Bounds, feet: Iterable[str]) -> str:
 
 def _of_foot(held: tuple[Active, ...]) -> str:
     return ", ".join(bound.what for bound in held) or _NONE
-
-
-def _of_joints(held: tuple[Active, ...]) -> str:
-    words: dict[str, list[str]] = {}
-    for bound in held:
-        words.setdefault(bound.what, []).append(bound.holder)
-    return "; ".join(f"{what} of {', '.join(holders)}" for what, holders in words.items()) or _NONE
 
 
 def _goal(goal: Goal) -> str:

@@ -16,7 +16,7 @@ Curve = np.ndarray
 
 
 def curves_at(history: History | None, direction: np.ndarray, times: np.ndarray) -> list[list[Curve]]:
-    """The curves of each plot; NaN where the run has nothing.
+    """The curves of each plot; NaN where the run has nothing, and after a fall, which would dwarf all others.
 
     Args:
         history: the run; None: there is none.
@@ -26,6 +26,7 @@ def curves_at(history: History | None, direction: np.ndarray, times: np.ndarray)
     if history is None or not len(history):
         return [[np.full(len(times), np.nan)] * count for count in COUNTS]
     found = history.curves(direction, float(times[-1]))
+    stands = np.where(found.fallen, np.nan, 1.0)
     plots = (
         [found.points[name] for name in POINTS],
         [found.linear["measured"]],
@@ -33,6 +34,6 @@ def curves_at(history: History | None, direction: np.ndarray, times: np.ndarray)
         [found.momentum, found.angular_momentum],
     )
     return [
-        [np.interp(times, found.time, curve, left=np.nan, right=np.nan) for curve in curves]
+        [np.interp(times, found.time, stands * curve, left=np.nan, right=np.nan) for curve in curves]
         for curves in plots
     ]

@@ -29,6 +29,7 @@ FRICTION, TWIST, LEAST = "friction limit", "friction limit of a twist", "normal 
 
 Used = dict[str, float]
 Cone = Literal["corners", "square", "facets", "upright"]
+_LEAST_LEVER = 1e-3
 # Rows of `wrench_cone` from the first one against a twist on.
 _TWISTS = 9
 
@@ -141,11 +142,12 @@ def about_middle(wrench: np.ndarray, rotation: np.ndarray, sole: Sole) -> np.nda
 def _lever(about: np.ndarray, half: np.ndarray) -> float:
     """Mean distance of a rectangle's corners from the CoP of a wrench (6,), weighed by the load of each, m.
 
-    The corners at (+-X, +-Y) carry (1 +- x / X) (1 +- y / Y) / 4 of f_z, the simplest loads with that CoP.
+    The corners at (+-X, +-Y) carry (1 +- x / X) (1 +- y / Y) / 4 of f_z, the simplest loads with that CoP. A foot
+    on one corner has no lever left, but rounding.
     """
     cop = np.array([-about[4], about[3]]) / about[2]
     part = cop / half
-    return sum(
+    lever = sum(
         0.25
         * (1.0 + i * part[0])
         * (1.0 + j * part[1])
@@ -153,6 +155,7 @@ def _lever(about: np.ndarray, half: np.ndarray) -> float:
         for i in (1, -1)
         for j in (1, -1)
     )
+    return max(lever, _LEAST_LEVER)
 
 
 def twist(about: np.ndarray) -> float:

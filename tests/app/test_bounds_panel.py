@@ -86,7 +86,7 @@ def test_the_lines_are_always_as_many(desk):
     everything = Bounds(((Active("left foot", "slides"),) * 3, ()), many, (goal,), ())
     few, all_of_them = (in_html(bounds, ("left", "right")) for bounds in (nothing, everything))
     assert few.count("<tr>") == all_of_them.count("<tr>")
-    assert "torque limit of joint_0, joint_1" in all_of_them
+    assert "joint_0: torque limit; joint_1: torque limit" in all_of_them
     assert "1234" in few
     assert words_of(few).count("–") == 5  # three holders, and two numbers that are none
 

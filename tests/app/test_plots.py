@@ -209,6 +209,19 @@ def test_a_robot_beside_one_at_rest_is_drawn_ten_times_a_second(desk, pushed):
     assert 9 <= drawn <= 11
 
 
+def test_the_curves_of_a_second_robot_end_with_its_fall(desk, pushed):
+    rows = pushed.recording.rows(20)
+    falling = rows.copy()
+    falling[30:, pushed.recording.slices["fallen"]] = 1.0
+    desk.plots.add(rows[:50])
+    desk.plots.add_beside(falling[:50])
+    desk.plots.draw()
+    for handle in desk.handles:
+        curve = handle.data[-1][1:-1]
+        assert np.isfinite(curve[:30]).all()
+        assert np.isnan(curve[30:]).all()
+
+
 def test_lines_never_outnumber_columns(talos, pushed):
     """A line without data would end the plot in the browser."""
 
