@@ -39,8 +39,8 @@ _CARRIES = 2e-3
 _NEAR = 0.01
 # A slack that is smaller than this is none, m/s^2 and rad/s^2.
 _LEAST_SLACK = 0.01
-# Of a run every sample in so much time is looked at, s.
-_LOOK = 0.005
+# Of a run one sample in so much time is looked at, s, and not more samples than a person waits for.
+_LOOK, _MOST_LOOKS = 0.005, 4000
 _NO_LOAD = "no load"
 # The ground's own bounds by their names in `used_of_ground`: there, the foot does not stay as it is.
 _OF_GROUND = {
@@ -188,7 +188,8 @@ def in_words(active: Iterable[Active]) -> str:
 
 def held_for(session: Session) -> dict[Active, float]:
     """How long each bound was active in a recording, s, the longest first; gains and controller as they are now."""
-    every = max(1, round(_LOOK / session.scenario.timestep))
+    timestep, most = session.scenario.timestep, math.ceil(len(session.recording) / _MOST_LOOKS)
+    every = max(1, round(_LOOK / timestep), most)
     layout, ground = session.recording.layout, session.ground
     choices, times = session.choices, Counter[Active]()
     gains = {name: float(getattr(choices.gains, name)) for name in declared_gains(choices.gains)}
@@ -198,7 +199,7 @@ def held_for(session: Session) -> dict[Active, float]:
         scale = choices.mismatch.torque_scale
         situation = Situation(session.robot, choices.controller, gains, friction, scale)
         times.update(bounds_of(sample, situation).active)
-    return {bound: count * every * session.scenario.timestep for bound, count in times.most_common()}
+    return {bound: count * every * timestep for bound, count in times.most_common()}
 
 
 def _feet(sample: Sample, situation: Situation) -> tuple[tuple[Active, ...], ...]:

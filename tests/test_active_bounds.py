@@ -91,6 +91,25 @@ def test_the_toes_of_computed_torque_are_where_the_net_cop_stops(talos, priority
         assert listed == bool(np.abs(sample["cop_admissible"][0] - edge).max() < 1.5e-3)
 
 
+def test_the_toes_of_the_peer_are_where_its_wrenches_lie(talos):
+    """PlaCo tells no multipliers: the moment about the front edge of the sole without its border is what is left."""
+    session = play(talos, forward_push(talos, seconds=0.45, controller="placo-wbc"))
+    front = talos.soles[0].upper[0] - session.choices.gains.safe_border
+    length = (talos.soles[0].upper - talos.soles[0].lower)[0] - 2.0 * session.choices.gains.safe_border
+    on_toes = 0
+    for sample in samples(session)[::3]:
+        for foot, name in enumerate(talos.foot_names):
+            place = pin.XYZQUATToSE3(sample["sole_pose"][foot])
+            wrench = pin.Force(sample["foot_wrench_admissible"][foot])
+            local = pin.SE3(place.rotation, np.zeros(3)).actInv(wrench)
+            # About the edge the load turns the foot back by f_z times the CoP's distance from it.
+            left = (local.angular[1] + front * local.linear[2]) / local.linear[2]
+            listed = Active(f"{name} foot", TOES) in active(session, sample)
+            assert listed == (left < 0.005 * length)
+            on_toes += listed
+    assert on_toes > 10
+
+
 def test_a_robot_at_rest_is_held_by_nothing(robot):
     session = played(robot, forward_push(robot))
     sample = sample_at(session, PUSH_START - 0.05)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from momentum_lab.active_bounds import Active, bounds_of
+from momentum_lab.active_bounds import bounds_of
 from momentum_lab.app.bounds_panel import situation_of
 from momentum_lab.app.differences import names_of
 from momentum_lab.app.robots import LoadedRobot
@@ -43,10 +43,11 @@ def both(statuses: tuple[Status, Status], truths: tuple[Truth, Truth]) -> Status
 
 def _one(truth: Truth, sample: Sample, loaded: LoadedRobot) -> Status:
     fall = None if truth.fall is None else Fall(truth.fall.time, truth.fall.reason)
-    held: tuple[Active, ...] = ()
-    if fall is None and truth.stopped is None:
-        held = bounds_of(sample, situation_of(loaded.model, truth)).active
-    return status_of(sample, loaded.model, fall, truth.failure, truth.stopped, held)
+    status = status_of(sample, loaded.model, fall, truth.failure, truth.stopped)
+    if status.kind != "border":
+        return status  # bounds are worked out only where they are told
+    held = bounds_of(sample, situation_of(loaded.model, truth)).active
+    return status_of(sample, loaded.model, held=held)
 
 
 def _short(status: Status, truth: Truth) -> str:

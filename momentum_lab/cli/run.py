@@ -60,8 +60,10 @@ def run(args: Namespace) -> int:
     if args.json:
         print(msgspec.json.encode(summary).decode())
     else:
-        show(summary, out)
+        show(summary)
         print(f"bounds: {_bounds(session)}")
+        if out is not None:
+            print(f"trace: {out}")
     errors = [each.error for each in (summary, summary.beside) if each is not None and each.error is not None]
     for error in errors:
         _note(error)
@@ -90,7 +92,7 @@ def said(agreement: Agreement) -> str:
     return f"other bits: {agreement.compared}; {agreement.difference}"
 
 
-def show(summary: Summary, out: Path | None) -> None:
+def show(summary: Summary) -> None:
     """The summary for people, on stdout."""
     table = Table(title=f"{summary.scenario}: {summary.robot}, {summary.controller}", show_header=False)
     robots = [summary] if summary.beside is None else [summary, summary.beside]
@@ -100,8 +102,6 @@ def show(summary: Summary, out: Path | None) -> None:
         table.add_row("controller", *(each.controller for each in robots))
         table.add_row("priority", *(f"{each.priority:g}" for each in robots))
     Console(markup=False).print(table)
-    if out is not None:
-        print(f"trace: {out}")
 
 
 def _bounds(session: Session) -> str:

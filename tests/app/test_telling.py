@@ -15,7 +15,7 @@ from momentum_lab.beside import Beside
 from momentum_lab.events import ApplyPush
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
-from momentum_lab.status import Status
+from momentum_lab.status import SOME_LIMIT, Status
 
 
 class Desk:
@@ -77,3 +77,18 @@ def test_each_gives_way_in_its_own_words(desk):
 def test_a_solver_without_an_answer_and_an_end_are_short(desk):
     status = desk.told(second={"stopped": "the state is not finite after 2.000 s"})
     assert status == Status("stopped", "priority 0: standing; priority 1: stopped", "black")
+
+
+@pytest.mark.parametrize("controller", ["computed-torque", "whole-body-qp"])
+def test_slippery_ground_is_named_where_it_stops_a_force(controller):
+    gains = {"friction": 0.05, "linear_damping": 20.0}
+    playback = Playback(Scenario("stand", robot="g1", controller=controller, gains=gains))
+    playback.take(ApplyPush(Push(force=80.0, duration=0.1)))
+    loaded = LoadedRobot(playback.session.robot, (), playback.session.recording.layout)
+    said = set()
+    for _ in range(20):
+        playback.tick(5)
+        frame = Frame(playback.truth(1.0), playback.shown.row.tobytes(), b"")
+        said.add(told(frame, playback.shown, loaded).words.partition(": ")[0])
+    assert "friction limit (left foot)" in said
+    assert not said & {SOME_LIMIT, "CoP on the toes"}
