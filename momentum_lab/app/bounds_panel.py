@@ -17,10 +17,7 @@ from momentum_lab.robot.model import RobotModel
 # How often it changes on the screen, s.
 _PERIOD = 0.15
 _NONE = "–"
-_HEAD = (
-    f'<div class="lab small"><b>What holds the robot back</b> <span class="dim">(from {100 * ACTIVE:.0f} % of a '
-    "limit on)</span>"
-)
+_EXPLAINED = f"(from {100 * ACTIVE:.0f} % of a limit on)"
 # Lines that are too long end in dots: what is below keeps its place.
 _CUT = 'style="white-space:nowrap;overflow:hidden;text-overflow:ellipsis"'
 _TABLE = '<table class="n" style="width:100%;border-collapse:collapse;table-layout:fixed">'
@@ -45,7 +42,8 @@ class BoundsPanel:
         if truth.playing and self._clock() < self._next:
             return
         self._next = self._clock() + _PERIOD
-        text = in_html(bounds_of(sample, situation_of(robot, truth)), robot.foot_names)
+        failure = truth.failure if sample.number("solver_failed") else None
+        text = in_html(bounds_of(sample, situation_of(robot, truth)), robot.foot_names, failure)
         if text != self._text:
             self._text = self._handle.content = text
 
@@ -55,8 +53,14 @@ def situation_of(robot: RobotModel, truth: Truth) -> Situation:
     return Situation(robot, truth.controller, truth.gains, truth.friction, truth.mismatch.torque_scale)
 
 
-def in_html(bounds: Bounds, feet: Iterable[str]) -> str:
-    """One line for each foot, one for all joints, and a table of the goals; always as many lines."""
+def in_html(bounds: Bounds, feet: Iterable[str], failure: str | None = None) -> str:
+    """One line for each foot, one for all joints, and a table of the goals; always as many lines.
+
+    Args:
+        bounds: what there is to say.
+        feet: names of the feet.
+        failure: why the controller has no answer; None when it has one.
+    """
     lines = [(f"{name} foot", _of_foot(held)) for name, held in zip(feet, bounds.feet, strict=True)]
     rows = "".join(
         f'<tr><td style="width:5.6em">{escape(name)}</td><td {_CUT} title="{escape(words)}">{escape(words)}</td></tr>'
@@ -64,7 +68,11 @@ def in_html(bounds: Bounds, feet: Iterable[str]) -> str:
     )
     goals = "".join(_goal(goal) for goal in bounds.goals)
     head = f"<tr><td></td><td {_RIGHT}>asked</td><td {_RIGHT}>granted</td><td {_RIGHT}>missing</td></tr>"
-    return f"{_HEAD}{_TABLE}{rows}</table>{_TABLE}{head}{goals}</table></div>"
+    note = escape(_EXPLAINED if failure is None else f"no answer: {failure}")
+    title = (
+        f'<div {_CUT} title="{note}"><b>What holds the robot back</b> <span class="dim">{note}</span></div>'
+    )
+    return f'<div class="lab small">{title}{_TABLE}{rows}</table>{_TABLE}{head}{goals}</table></div>'
 
 
 def _of_foot(held: tuple[Active, ...]) -> str:

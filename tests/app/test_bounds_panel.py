@@ -91,8 +91,20 @@ def test_the_lines_are_always_as_many(desk):
     assert words_of(few).count("–") == 5  # three holders, and two numbers that are none
 
 
+def test_why_there_is_no_answer_is_told(desk):
+    failure = (
+        "cannot be met: friction of the left foot (short by 0.1); holding the posture with joint springs"
+    )
+    row = desk.playback.latest.row
+    desk.see(failure=failure)
+    assert "no answer" not in desk.text  # it was at another tick
+    row[desk.playback.session.recording.slices["solver_failed"]] = 1.0
+    desk.see(failure=failure, playing=False)
+    assert f"no answer: {failure}" in words_of(desk.text)
+
+
 def test_text_of_strangers_is_no_html():
     evil = Active("<b>", "<script>")
-    text = in_html(Bounds(((evil,),), (evil,), (), ()), ("<i>",))
+    text = in_html(Bounds(((evil,),), (evil,), (), ()), ("<i>",), "<script>")
     assert "<script>" not in text
     assert "<i>" not in text
