@@ -138,6 +138,7 @@ def test_two_learners_do_not_disturb_each_other(served: Served, open_page: Opene
     other.click("C  Only the one that bends")
     expect(button(other, "Next (I)")).to_be_enabled(timeout=PATIENCE)
     other.press("i")
+    at_step(other, 3)
     other.click("Play")
     other.expect_text(r"simulated time 1\.80 s")
     at_step(one, 1)
