@@ -7,21 +7,27 @@ Angular momentum can be brought back as soon as what that costs leaves the captu
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
 from momentum_lab.compiled import compiled
 from momentum_lab.control.controller import Reference
 from momentum_lab.control.foot_forces import StanceFeet
-from momentum_lab.control.priority import Compromise
+from momentum_lab.control.planner import OWN
+from momentum_lab.control.priority import Compromise, compromise
+from momentum_lab.momentum.directions import ALL
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.pendulum import capture_coordinates, pendulum_frequency
 from momentum_lab.momentum.polygon import depth
 from momentum_lab.robot.rotation import rotation_error
 from momentum_lab.robot.state import Dynamics
 
-# A body that will have turned so far, rad, begins to need its angular momentum back, and then needs nothing more
-# urgently. The chapter's push turns both robots by 0.25 at most; TALOS' hips end at 0.4, G1's ankles before 0.6.
+# A body that will have turned so far sideways, rad, begins to need its angular momentum back, and then needs
+# nothing more urgently: TALOS' hips end at 0.4, G1's ankles before 0.6.
 _LITTLE_ROOM, _NO_ROOM = 0.4, 0.7
+# Legs fold forward and backward, where bodies turn by 0.7 and stand: such a turn counts this part of one sideways.
+_PITCH = 0.4
 # Braking begins this far before its cost is covered, m: within so long the capture point still moves inward.
 _EARLY = 0.02
 # Damping that is switched off does not make the turn endless, 1/s.
@@ -102,7 +108,11 @@ def _urgency(
     inertia = np.ascontiguousarray(locked_inertia)
     tilt, spin = rotation_error(pelvis, desired_pelvis), momentum[3:] - goal_momentum
     to_turn = tilt + np.linalg.solve(inertia, spin) / max(damping, _LEAST_DAMPING)
-    turning = (to_turn[1] * missing[0] - to_turn[0] * missing[1]) / distance
+    turning = 0.0
+    for axis, counts in ((0, 1.0), (1, _PITCH)):
+        along = desired_pelvis[:, axis]
+        turns = along[1] * missing[0] - along[0] * missing[1]
+        turning += counts * turns / distance * (to_turn[0] * along[0] + to_turn[1] * along[1])
     if not turning > _LITTLE_ROOM:
         return 0.0
     held = point_to_hold(
@@ -112,8 +122,72 @@ def _urgency(
     return affordable * _ramp(turning, _LITTLE_ROOM, _NO_ROOM)
 
 
+class Gains(Protocol):
+    """Those of `ComputedTorqueGains` that count here."""
+
+    @property
+    def angular_damping(self) -> float:
+        """Gamma_11, 1/s."""
+        ...
+
+    @property
+    def pelvis_stiffness(self) -> float:
+        """K_theta, 1/s^2."""
+        ...
+
+    @property
+    def friction(self) -> float:
+        """Coulomb coefficient to count on."""
+        ...
+
+
+def balanced(
+    mass: float,
+    dynamics: Dynamics,
+    desired: np.ndarray,
+    reference: Reference,
+    stance: StanceFeet,
+    gains: Gains,
+    priority: float,
+) -> Compromise:
+    """The net force and angular rate to ask the ground for (section 5.1.2).
+
+    An extension: where the laws of Eqs. 37 and 38 alone decide, angular momentum gets more than its priority once
+    the body has to stop turning; see `urgency_to_turn_back`.
+
+    Args:
+        mass: m, kg.
+        dynamics: the state with everything computed.
+        desired: [dl_d; dk_d] (6,), N and N m.
+        reference: what the robot shall do.
+        stance: the feet that carry the robot.
+        gains: Gamma_11, K_theta and the friction to count on.
+        priority: from 0 to 1.
+    """
+
+    def weighed(priority: float) -> Compromise:
+        return compromise(
+            desired,
+            dynamics.com_in_world,
+            mass,
+            stance.safe_polygon,
+            stance.height,
+            gains.friction,
+            priority,
+        )
+
+    balance = weighed(priority)
+    if reference.controlled != ALL or reference.planner != OWN:
+        return balance
+    missing = balance.cop_desired - balance.cop_admissible
+    urgency = urgency_to_turn_back(
+        missing, dynamics, reference, stance, mass, gains.angular_damping, gains.pelvis_stiffness
+    )
+    return weighed(urgency) if urgency > priority else balance
+
+
 def urgency_to_turn_back(
-    balance: Compromise,
+    missing: np.ndarray,
     dynamics: Dynamics,
     reference: Reference,
     stance: StanceFeet,
@@ -124,10 +198,11 @@ def urgency_to_turn_back(
     """How much priority angular momentum needs, whoever else has it: 0 while the body has room, 1 without.
 
     It counts how far the body will have turned when its angular momentum is gone, theta + I_G^-1 k / Gamma_11, in
-    the direction in which the missing CoP turns it; and only as far as `point_to_hold` is inside the feet.
+    the direction in which the missing CoP turns it; and only as far as `point_to_hold` is inside the feet: what
+    catches the fall comes first.
 
     Args:
-        balance: what the priority alone would ask for.
+        missing: from the CoP that can be to the one that is asked for (2,), m.
         dynamics: the state with everything computed.
         reference: what the robot shall do.
         stance: the feet that carry the robot.
@@ -139,7 +214,7 @@ def urgency_to_turn_back(
         From 0 to 1.
     """
     return _urgency(
-        balance.cop_desired - balance.cop_admissible,
+        missing,
         dynamics.com_in_world,
         dynamics.com_velocity,
         reference.com_velocity,
