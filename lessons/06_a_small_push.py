@@ -105,8 +105,8 @@ STEPS = (
                 "ddr_x": lab.Symbol(
                     lambda s: q.FORCE_X.values(s) / s.robot.mass, "m/s^2", "by the forces", ".3f"
                 ),
-                "Gamma_22": lab.Symbol(lambda s: s.gains.linear_stiffness, "1/s^2", "spring"),
-                "Gamma_21": lab.Symbol(lambda s: s.gains.linear_damping, "1/s", "damper", ".1f"),
+                "Gamma_22": lab.Symbol(lambda s: s.choices.gains.linear_stiffness, "1/s^2", "spring"),
+                "Gamma_21": lab.Symbol(lambda s: s.choices.gains.linear_damping, "1/s", "damper", ".1f"),
                 "r_d": lab.Symbol(lambda s: q.COM_X.values(s)[0], "m", "its place", ".4f"),
                 "r_x": q.COM_X,
                 "dr_x": q.COM_SPEED_X,
