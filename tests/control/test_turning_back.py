@@ -76,8 +76,8 @@ FALLING_LEFT = np.array([-4.0, 0.0, 0.0])
 
 def test_angular_momentum_is_urgent_once_the_body_runs_out_of_room():
     assert urgency((0.0, 0.0), FALLING_LEFT, LEFT) == 1.0
-    assert 0.0 < urgency((0.0, 0.0), 0.7 * FALLING_LEFT, LEFT) < 1.0
-    assert urgency((0.0, 0.0), 0.4 * FALLING_LEFT, LEFT) == 0.0
+    assert 0.0 < urgency((0.0, 0.0), 0.45 * FALLING_LEFT, LEFT) < 1.0
+    assert urgency((0.0, 0.0), 0.25 * FALLING_LEFT, LEFT) == 0.0
 
 
 def test_it_is_not_while_the_fall_has_not_been_caught():

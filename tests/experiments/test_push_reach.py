@@ -10,7 +10,7 @@ from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario, changed
 
 # Above 1 is what turning the body adds. From the side it is least: hips and ankles roll by 0.3 to 0.5 rad only.
-REACHED = {0: 1.20, 45: 1.15, 90: 1.05, 135: 1.15, 180: 1.20, 225: 1.15, 270: 1.05, 315: 1.15}
+REACHED = {0: 1.20, 45: 1.15, 90: 1.09, 135: 1.15, 180: 1.20, 225: 1.15, 270: 1.09, 315: 1.15}
 
 
 def always(_fraction: float) -> bool:
