@@ -9,6 +9,8 @@ import viser
 
 from momentum_lab.app import html, share_html
 from momentum_lab.app.control_panel import Choices, ControlPanel
+from momentum_lab.app.demo_panel import DemoPanel
+from momentum_lab.app.demo_stage import DemoStage
 from momentum_lab.app.ground_panel import GroundPanel
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.learn_panel import LearnPanel
@@ -50,6 +52,7 @@ class Panels:
         ask: where a lesson's events go.
         library: the lessons.
         lesson: the script of the lesson to begin with.
+        demo: what plays while nobody touches the tab.
     """
 
     def __init__(
@@ -65,7 +68,8 @@ class Panels:
         feet: tuple[str, ...],
         ask: Callable[[LessonEvent], None],
         library: Library,
-        lesson: Path | None = None,
+        lesson: Path | None,
+        demo: DemoStage,
     ) -> None:
         gui = client.gui
         gui.configure_theme(show_share_button=False, show_logo=False, brand_color=(0, 114, 178))
@@ -87,10 +91,12 @@ class Panels:
             self.mismatch = MismatchPanel(gui, post, truth)
         with group.add_tab("View"):
             ViewPanel(gui, self.settings, look, redraw)
+            DemoPanel(gui, demo.demo)
         with group.add_tab("Runs"):
             self.runs = RunsPanel(gui, post, redraw, truth)
         with group.add_tab("Share"):
             self.share = SharePanel(gui, sharing, address)
+        demo.furnish()
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         left = gui.add_panel()
         # The browser opens the first tab.

@@ -13,6 +13,8 @@ import viser
 from momentum_lab.app.camera import LOOSE, START_VIEW, TIGHT, VIEWS, Camera
 from momentum_lab.app.comparison import Comparison
 from momentum_lab.app.control_panel import Choices
+from momentum_lab.app.demo_stage import DemoStage
+from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
@@ -68,6 +70,7 @@ class Visitor:
         url: where the lab is served.
         library: the lessons.
         lesson: the script of the lesson to begin with.
+        demo: how long nobody has to touch the tab before it plays by itself, s; None: it never does.
     """
 
     def __init__(
@@ -80,6 +83,7 @@ class Visitor:
         url: str,
         library: Library,
         lesson: Path | None = None,
+        demo: float | None = None,
     ) -> None:
         self._url, self._library, self._lesson = url, library, lesson
         self._client, self._shelf, self._profile = client, shelf, profile
@@ -88,6 +92,7 @@ class Visitor:
         self._stage: Stage | None = None
         self._panels: Panels | None = None
         self._comparison = Comparison(client)
+        self._demo = DemoStage(client, self._link.ask, self._robot, demo)
         self._run = -1
         self._floor = 0.0
         self._left = False
@@ -108,10 +113,15 @@ class Visitor:
 
     def post(self, event: Event) -> None:
         """Hand an event to the session; tell the person if it is not allowed."""
+        self._demo.demo.touch()
         try:
             self._link.post(event)
         except InputError as error:
             self.tell(str(error))
+
+    def _ask(self, event: LessonEvent) -> None:
+        self._demo.demo.touch()
+        self._link.ask(event)
 
     def tell(self, words: str) -> None:
         """Show a notice."""
@@ -120,6 +130,7 @@ class Visitor:
     def close(self) -> None:
         """End the session and the drawing: the tab has been closed."""
         self._left = True
+        self._demo.close()
         self._link.close()
         self._thread.join()
 
@@ -145,6 +156,7 @@ class Visitor:
         if self._panels is not None:
             self._comparison.begin(frame, loaded, self._panels.runs, self._panels.plots)
         stage = self._set_stage(truth, loaded, sample)
+        self._demo.before(stage.camera, frame.demo)
         panels = self._panels or self._furnish(truth, loaded.layout.foot_names)
         self._comparison.begin(frame, loaded, panels.runs, panels.plots)
         if truth.run != self._run:
@@ -155,6 +167,7 @@ class Visitor:
             changed = self._comparison.draw(frame, sample, panels.settings)
         if changed:
             self._look(START_VIEW)
+        self._demo.after(stage.camera, self._comparison.spread, frame.demo)
         self._client.flush()
         self._draw_panels(panels, frame, loaded, sample)
 
@@ -187,13 +200,18 @@ class Visitor:
             truth,
             self._sharing(),
             feet,
-            self._link.ask,
+            self._ask,
             self._library,
             self._lesson,
+            self._demo,
         )
         if self._stage is not None:
             self._receive(self._panels, self._stage)
         return self._panels
+
+    def _robot(self) -> str:
+        """Which robot plays."""
+        return "" if self._stage is None else self._stage.name
 
     def _sharing(self) -> Sharing:
         return Sharing(
