@@ -18,7 +18,7 @@ from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
-from momentum_lab.app.marks import FEW_LABELS
+from momentum_lab.app.marks import FEW_LABELS, Theme
 from momentum_lab.app.overlays import Picture, overlays
 from momentum_lab.app.panels import Panels
 from momentum_lab.app.plate_scene import PlateScene
@@ -94,7 +94,7 @@ class Visitor:
         self._comparison = Comparison(client)
         self._demo = DemoStage(client, self._link.ask, self._robot, demo)
         self._run = -1
-        self._floor = 0.0
+        self._floor: tuple[float, Theme] = (0.0, "light")
         self._left = False
         self.frames = 0
         self.latest: Frame | None = None
@@ -240,9 +240,11 @@ class Visitor:
         picture = Picture(
             stage.loaded.model, truth.push, truth.gains.get("safe_border", 0.0), settings.arrow_scale
         )
-        if truth.floor != self._floor:
-            self._floor = truth.floor
-            add_floor(self._client, truth.floor)
+        floor = (truth.floor, settings.theme)
+        if floor != self._floor:
+            self._floor = floor
+            add_floor(self._client, *floor)
+        stage.marks.paint(settings.theme)
         stage.plates.draw(sample["ground_pose"], truth.friction, truth.uneven)
         stage.body.draw(sample["q"])
         place = self._comparison.middle(sample["com"][:2])

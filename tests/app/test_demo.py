@@ -18,7 +18,9 @@ class Lab:
     def __init__(self, patience: float | None = PATIENCE) -> None:
         self.now = 1000.0
         self.done: list[str] = []
-        self.demo = Demo(self._play, lambda: self.done.append("left"), lambda: "g1", patience, lambda: self.now)
+        self.demo = Demo(
+            self._play, lambda: self.done.append("left"), lambda: "g1", patience, lambda: self.now
+        )
 
     def _play(self, scene: Scene) -> None:
         self.done.append(scene.caption)

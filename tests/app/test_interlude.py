@@ -71,4 +71,5 @@ def test_a_lesson_waits_too(own: Playback, tmp_path) -> None:
     assert room.news() is None
     room.take(Pause())
     assert room.stage is lesson
-    assert told is not None and told.file
+    assert told is not None
+    assert told.file
