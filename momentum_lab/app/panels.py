@@ -7,7 +7,7 @@ from pathlib import Path
 
 import viser
 
-from momentum_lab.app import html, share_html
+from momentum_lab.app import access_html, html, share_html
 from momentum_lab.app.appearance import Appearance, dress
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.demo_panel import DemoPanel
@@ -101,6 +101,7 @@ class Panels:
             self.share = SharePanel(gui, sharing, address)
         demo.furnish()
         appearance.add_ear(gui)
+        gui.add_html(access_html.NAMES)
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         left = gui.add_panel()
         # The browser opens the first tab.
