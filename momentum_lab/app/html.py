@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from html import escape
 
 from momentum_lab.app.marks import STYLES, MarkStyle
+from momentum_lab.app.steady import blanks, steady
 
 # On a dark page the style sheet below gives these names lighter colours.
 COLORS = {
@@ -22,7 +23,7 @@ TITLE = (
     # Playing controls and the big button are what a hand looks for first.
     "<style>div:has(>.lab-big)+* button{height:3.1em!important;font-size:1.15em!important}"
     ".lab{padding:0 .75em .5em .75em;font-size:.875em;line-height:1.4}"
-    ".lab b{font-weight:600}.lab .n{font-variant-numeric:tabular-nums}"
+    ".lab b{font-weight:600}.lab .n,.lab.n{font-variant-numeric:tabular-nums}"
     ".lab.small{padding:.3em .75em .1em .75em;font-size:.78em;line-height:1.3}"
     ".lab .dim{color:#6b6b6b}"
     "[data-mantine-color-scheme=dark]{--lab-green:#3cc79a;--lab-orange:#f0a544;--lab-vermillion:#ff8a5b;"
@@ -59,10 +60,11 @@ def time_line(
 ) -> str:
     """Simulated time and how it runs, in figures that do not change their width."""
     asked = "" if speed == 1.0 else f" · speed {speed:g}"
-    pace = f"{real_time_factor:.2f} × real time" if playing else "paused"
+    pace = f"{steady(real_time_factor, 2, 1)} × real time" if playing else "paused"
     if behind:
-        pace = f"{behind:.2f} s before the end"
-    return f'<div class="lab n dim">simulated time <b>{time:.2f} s</b> · {pace}{asked}{_failures(failures)}</div>'
+        pace = f"{steady(behind, 2, 2)} s before the end"
+    clock = f"{blanks(time, 2, 3)}<b>{time:.2f} s</b>"
+    return f'<div class="lab n dim">simulated time {clock} · {pace}{asked}{_failures(failures)}</div>'
 
 
 def _failures(count: int) -> str:
@@ -96,7 +98,7 @@ def slacks(values: Iterable[tuple[str, float, str]]) -> str:
     """What has to wait: name, slack and unit of each output, with a bar as long as it is large."""
     lines = "".join(
         f"<tr><td>{escape(name)}</td>"
-        f'<td class="n" style="text-align:right;padding:0 .5em">{abs(value):.2f} {unit}</td>'
+        f'<td class="n" style="text-align:right;padding:0 .5em">{steady(abs(value), 2, 3)} {unit}</td>'
         f'<td style="width:40%"><div style="width:{_share(value):.0f}%;height:.6em;background:{COLORS["orange"]}">'
         "</div></td></tr>"
         for name, value, unit in values
