@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 from html import escape
+from typing import Literal
 
 import numpy as np
 import viser
@@ -14,7 +15,7 @@ from momentum_lab.app.camera import Camera, Seat
 from momentum_lab.app.demo import AHEAD, TURN, Demo, Scene
 from momentum_lab.app.demo_wire import DemoEvent, LeaveScenes, ShowScene
 
-HOTKEY = "X"
+HOTKEY: Literal["X"] = "X"
 """What the page presses for a person whenever anything on it is touched; a person may press it, too."""
 COMMAND = "End the demonstration"
 # How often is looked whether it is time, s.

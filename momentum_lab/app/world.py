@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import viser
-
 from momentum_lab.app.marks import Color, Theme
 from momentum_lab.app.profile import RenderProfile
+from momentum_lab.app.viewer import Viewer
 
 # Of the floor, its lines every 10 cm, its lines every metre.
 _COLORS: dict[Theme, tuple[Color, Color, Color]] = {
@@ -14,7 +13,7 @@ _COLORS: dict[Theme, tuple[Color, Color, Color]] = {
 }
 
 
-def add_world(client: viser.ClientHandle, profile: RenderProfile) -> None:
+def add_world(client: Viewer, profile: RenderProfile) -> None:
     """Put floor and light into a browser tab's scene."""
     client.scene.configure_default_lights(enabled=True, cast_shadow=profile.shadows)
     if not profile.environment:
@@ -22,11 +21,11 @@ def add_world(client: viser.ClientHandle, profile: RenderProfile) -> None:
     add_floor(client, 0.0, "light")
 
 
-def add_floor(client: viser.ClientHandle, height: float, theme: Theme) -> None:
-    """Put the floor of a light or a dark page at a height, m."""
+def add_floor(client: Viewer, height: float, theme: Theme, root: str = "") -> None:
+    """Put the floor of a light or a dark page at a height, m, below a node; without one below the world's."""
     plane, cell, section = _COLORS[theme]
     client.scene.add_grid(
-        "/ground",
+        f"{root}/ground",
         position=(0.0, 0.0, height),
         infinite_grid=True,
         fade_distance=14.0,
