@@ -101,7 +101,7 @@ def slacks(values: Iterable[tuple[str, float, str]]) -> str:
     """What has to wait: name, slack and unit of each output, with a bar as long as it is large."""
     lines = "".join(
         f"<tr><td>{escape(name)}</td>"
-        f'<td class="n" style="text-align:right;padding:0 .5em">{steady(abs(value), 2, 3)} {unit}</td>'
+        f'<td class="n" style="text-align:right;padding:0 .5em">{abs(value):.2f} {unit}</td>'
         f'<td style="width:40%"><div style="width:{_share(value):.0f}%;height:.6em;background:{COLORS["orange"]}">'
         "</div></td></tr>"
         for name, value, unit in values

@@ -36,8 +36,3 @@ def test_the_line_of_time_does_not_jump(behind):
     }
     assert len(lines) == 1
     assert ".lab.n{font-variant-numeric:tabular-nums}" in html.TITLE
-
-
-def test_the_table_of_what_has_to_wait_does_not_jump():
-    widths = {len(text(html.slacks([("k", value, "N m")]))) for value in (0.0, 9.5, -10.0, 99.996, -640.0)}
-    assert len(widths) == 1
