@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from momentum_lab.app.demo_wire import DemoEvent, LeaveScenes, ShowScene
+from momentum_lab.app.interlude import Interlude
 from momentum_lab.app.lesson_runs import RunPlayback, staged
 from momentum_lab.app.lesson_wire import LeaveLesson, LessonEvent, LessonNews, OpenLesson, PlayRun, ShowRun
 from momentum_lab.app.playback import Playback
@@ -30,6 +32,7 @@ class Classroom:
 
     def __init__(self, own: Playback) -> None:
         self._own = self.stage = own
+        self._interlude = Interlude()
         self._lesson: parts.Lesson | None = None
         self._robot: RobotModel | None = None
         self._runs: dict[str, RunPlayback] = {}
@@ -41,12 +44,25 @@ class Classroom:
         self._error = ""
         self._told = LessonNews()
 
-    def take(self, event: Event | LessonEvent | OpenRun) -> None:
+    @property
+    def in_demo(self) -> bool:
+        """Whether what is on stage is a scene that nobody has asked for."""
+        return self._interlude.on
+
+    def take(self, event: Event | LessonEvent | DemoEvent | OpenRun) -> None:
         """Do what an event asks for, and put on stage what it is about.
 
         Raises:
             InputError: it asks for something that does not exist, is out of range, or comes too early.
         """
+        if isinstance(event, ShowScene):
+            self.stage = self._interlude.scene(self.stage, event.scenario)
+            return
+        self.stage = self._interlude.end(self.stage)
+        if not isinstance(event, LeaveScenes):
+            self._act(event)
+
+    def _act(self, event: Event | LessonEvent | OpenRun) -> None:
         before = self.stage
         match event:
             case OpenLesson():

@@ -63,6 +63,7 @@ class SideScene:
         self._plates.draw(sample["ground_pose"], truth.friction, truth.uneven)
         self._com = sample["com"].copy()
         self._body.draw(sample["q"])
+        self._marks.paint(settings.theme)
         self._marks.draw(overlays(sample, picture), settings.shown, settings.labelled & _LABELLED)
 
     def name(self, words: tuple[str, str], places: tuple[np.ndarray, np.ndarray]) -> None:

@@ -17,6 +17,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from momentum_lab.app.classroom import Classroom
+from momentum_lab.app.demo_wire import DemoEvent
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.pacer import Pacer
 from momentum_lab.app.playback import Playback
@@ -135,7 +136,7 @@ class Worker:
             case _:
                 self._take(message)
 
-    def _take(self, event: Event | LessonEvent | OpenRun) -> None:
+    def _take(self, event: Event | LessonEvent | DemoEvent | OpenRun) -> None:
         before = self._playback
         run, playing, ticks = before.run, before.playing, before.session.ticks
         try:
@@ -202,6 +203,7 @@ class Worker:
             lesson=self._room.news(),
             other=self._other(truth),
             foreseen=self._foreseen,
+            demo=self._room.in_demo,
         )
         self._history.clear()
         self._other_history.clear()

@@ -7,6 +7,7 @@ import re
 from typing import Any, NoReturn
 
 from momentum_lab import __version__
+from momentum_lab.app.patience import LEAST_PATIENCE, MOST_PATIENCE, PATIENCE
 from momentum_lab.cli.values import (
     ABOVE_ZERO,
     controlled_directions,
@@ -165,6 +166,14 @@ def _app_arguments(parser: _Parser) -> None:
     parser.add_argument("--scenario", metavar="S", help="what to start with; otherwise stand")
     _choice_arguments(parser)
     _code_argument(parser)
+    parser.add_argument(
+        "--demo",
+        type=number("--demo", LEAST_PATIENCE, MOST_PATIENCE, "s"),
+        nargs="?",
+        const=PATIENCE,
+        metavar="SECONDS",
+        help=f"play by itself when nobody has touched a tab for so long ({PATIENCE:g} s)",
+    )
     _serving_arguments(parser)
 
 
