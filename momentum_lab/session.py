@@ -24,6 +24,8 @@ from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.events import (
     ApplyPush,
     ApplyPushes,
+    HoldPush,
+    LetGo,
     LoggedEvent,
     MoveGround,
     Reset,
@@ -49,7 +51,8 @@ from momentum_lab.physics.engines import check_ground, check_mismatch, world
 from momentum_lab.physics.ground import Ground, checked_friction
 from momentum_lab.physics.mismatch import EXACT, Mismatch, real_robot, with_error
 from momentum_lab.physics.motors import Line, delayed, ticks_late
-from momentum_lab.physics.push import Push
+from momentum_lab.physics.held_push import Pushed
+from momentum_lab.physics.push import Push, pushed_frame
 from momentum_lab.physics.sensors import measured
 from momentum_lab.physics.simulator import Step
 from momentum_lab.recording import Layout, Recording, Sample
@@ -105,7 +108,7 @@ class Session:
 
     # What changes while the session runs, and a snapshot holds; everything else is decided when it begins.
     state: State
-    pushes: tuple[Push, ...]
+    _pushed: Pushed
     priority: float
     controlled: Directions
     planner: str
@@ -182,6 +185,11 @@ class Session:
         return self._ground
 
     @property
+    def pushes(self) -> tuple[Push, ...]:
+        """All pushes since the robot stood up, sized; one that is held has lasted until now."""
+        return self._pushed.until(self.time, self.scenario.timestep)
+
+    @property
     def motion_reach(self) -> np.ndarray:
         """How far the present motion moves each joint (na,), rad; zeros without one."""
         return np.zeros(self.robot.na) if self._motion is None else self._motion.reach.sum(axis=0)
@@ -224,7 +232,7 @@ class Session:
         plates = self._ground.at(self.time)
         output = self._control(self._believed(dynamics), plates)
         torque, self._line = delayed(self._line, output.torque, self._ticks_late)
-        step = self._simulator.step(dynamics, torque, self.pushes, self.time)
+        step = self._simulator.step(dynamics, torque, self._pushed.all, self.time)
         self.fall = self.fall or self._fall(dynamics, step, plates)
         sample = self._record(dynamics, output, step, plates)
         self._advance(output, step)
@@ -359,7 +367,7 @@ class Session:
                 check_mismatch(self.scenario.engine, with_error(self.mismatch, name, value))
             case SelectController(name):
                 controller_entry(name)
-            case ApplyPush(push):
+            case ApplyPush(push) | HoldPush(push):
                 self._checked_push(push)
             case ApplyPushes(pushes):
                 for push in pushes:
@@ -410,6 +418,10 @@ class Session:
             case ApplyPushes(pushes):
                 for push in pushes:
                     self._push(push)
+            case HoldPush(push):
+                self._pushed = self._pushed.held_from(self.time, self._checked_push(push))
+            case LetGo():
+                self._pushed = self._pushed.let_go(self.time)
             case Reset():
                 self._scripted = ()
                 self._stand_up()
@@ -417,7 +429,9 @@ class Session:
     def _push(self, push: Push) -> None:
         """Let a push begin so long after now as its start says."""
         sized = self._checked_push(push)
-        self.pushes = (*self.pushes, msgspec.structs.replace(sized, start=self.time + sized.start))
+        self._pushed = self._pushed.with_push(
+            msgspec.structs.replace(sized, start=self.time + sized.start)
+        )
 
     def _feet_named(self, name: str) -> tuple[int, ...]:
         """The feet of that name; all for an empty one."""
@@ -447,7 +461,7 @@ class Session:
     def _stand_up(self) -> None:
         """The robot where it started, the clock at zero."""
         self.state = self._start
-        self.pushes = self._scripted
+        self._pushed = Pushed(self._scripted)
         self.fall = None
         self.solver_failures = 0
         self.last_failure = None
@@ -464,8 +478,7 @@ class Session:
 
     def _checked_push(self, push: Push) -> Push:
         """The push with its force, if the robot has the body it names."""
-        if push.body is not None and push.body not in self.robot.spec.push_bodies:
-            raise InputError("body", push.body, f"one of {', '.join(self.robot.spec.push_bodies)}")
+        pushed_frame(self.robot, push)
         return push.sized_for(self.robot.mass)
 
 
