@@ -9,10 +9,10 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin
 
+from momentum_lab.fall import Fall
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.recording import Sample
 from momentum_lab.robot.model import RobotModel
-from momentum_lab.session import Fall
 
 Kind = Literal["standing", "border", "lifted", "solver", "fallen", "stopped"]
 StatusColor = Literal["green", "orange", "vermillion", "black"]

@@ -23,6 +23,9 @@ FLOORS: tuple[frozenset[str], ...] = (
     frozenset(
         {
             "beside",
+            "choices",
+            "effects",
+            "fall",
             "scenario",
             "share_code",
             "run_file",

@@ -327,7 +327,7 @@ def test_without_json_the_result_is_for_people(capsys: Output, tmp_path: Path) -
 
 
 def test_a_fall_is_a_result_and_not_an_error(capsys: Output, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("momentum_lab.session._FALLEN_HEIGHT", 1.1)
+    monkeypatch.setattr("momentum_lab.fall._FALLEN_HEIGHT", 1.1)
     assert main(["run", "stand", *SHORT]) == 0
     assert "fell at 0.000 s" in capsys.readouterr().out
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from momentum_lab.session import Fall
+from momentum_lab.fall import Fall
 from momentum_lab.status import Status, status_of
 from tests.app.conftest import changed_sample, sample_at
 from tests.conftest import yaw_rotation

@@ -19,14 +19,13 @@ from momentum_lab.events import (
     SetAngularGoal,
     SetDirections,
     SetGain,
-    SetGains,
     SetGroundSense,
     SetMismatch,
     SetMotion,
     SetPriority,
 )
-from momentum_lab.momentum.directions import directions, text_of
-from momentum_lab.physics.mismatch import EXACT, Mismatch, changes, with_error
+from momentum_lab.momentum.directions import text_of
+from momentum_lab.physics.mismatch import EXACT, Mismatch, changes
 from momentum_lab.session import Session
 
 
@@ -89,34 +88,18 @@ class Chosen:
 
 def chosen_of(session: Session, waiting: Iterable[SessionEvent]) -> Chosen:
     """The choices of this moment; those that wait for the session's next tick count as made."""
-    priority, controlled = session.priority, text_of(session.controlled)
-    motion, angular_goal = session.motion, session.angular_goal
-    controller, planner, gains = session.controller, session.planner, values_of(session.gains)
-    sense, mismatch = session.ground_sense, session.mismatch
-    for event in waiting:
-        match event:
-            case SetPriority(value):
-                priority = value
-            case SetDirections(text):
-                controlled = text_of(directions(text))
-            case SelectPlanner(name):
-                planner = name
-            case SetMotion(name):
-                motion = name
-            case SetAngularGoal(goal):
-                angular_goal = goal
-            case SetGroundSense(told_or_felt):
-                sense = told_or_felt
-            case SetMismatch(name, value):
-                mismatch = with_error(mismatch, name, value)
-            case SetGain(name, value):
-                gains[name] = value
-            case SetGains(values):
-                gains.update(values)
-            case SelectController(name):
-                controller, gains = name, values_of(controller_entry(name).gains)
-                planner = planner if planner in controller_entry(name).planners else OWN
-    return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains, sense, mismatch)
+    choices = session.choices_after(waiting)
+    return Chosen(
+        controller=choices.controller,
+        priority=choices.priority,
+        controlled=text_of(choices.controlled),
+        planner=choices.planner,
+        motion=choices.motion,
+        angular_goal=choices.angular_goal,
+        gains=values_of(choices.gains),
+        ground_sense=choices.ground_sense,
+        mismatch=choices.mismatch,
+    )
 
 
 def values_of(gains: object) -> dict[str, float]:

@@ -138,9 +138,7 @@ class Hand:
         if pull is None:
             return  # nothing was grabbed, or it was refused
         reach = note.reach
-        scale = Scale.of(
-            reach.robot.model, reach.size, self._settings.arrow_scale, self._panel.strongest
-        )
+        scale = Scale.of(reach.robot.model, reach.size, self._settings.arrow_scale, self._panel.strongest)
         force = scale.force(pulled(eye, start, end))
         if pull.holds:
             self._hold(pull, force, scale)
@@ -157,7 +155,7 @@ class Hand:
     def _hold(self, pull: Pull, force: np.ndarray, scale: Scale) -> None:
         """Give the force of now, if it is another one."""
         piece = pull.grip.piece(force, scale.strongest)
-        if piece.force and pull.held is None or pull.held is not None and piece != pull.held:
+        if (piece.force and pull.held is None) or (pull.held is not None and piece != pull.held):
             pull.held = piece
             self._post(HoldPush(piece))
 

@@ -197,9 +197,9 @@ def _pushed_point(sample: Sample, robot: RobotModel, push: Push, ground: float) 
     if push.point is not None:
         data = robot.model.createData()
         pin.forwardKinematics(robot.model, data, sample["q"])
-        point: np.ndarray = pin.updateFramePlacement(
-            robot.model, data, pushed_frame(robot, push)
-        ).act(np.array(push.point))
+        point: np.ndarray = pin.updateFramePlacement(robot.model, data, pushed_frame(robot, push)).act(
+            np.array(push.point)
+        )
         return point
     com = sample["com"]
     height = com[2] if push.height is None else ground + push.height

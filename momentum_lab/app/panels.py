@@ -82,9 +82,7 @@ class Panels:
         with group.add_tab("Push"):
             self.push = PushPanel(gui, post, tell, redraw)
             SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
-            self.hand = Hand(
-                client, self.push, self.settings, post, tell, lambda: sharing.take(False).pushes
-            )
+            self.hand = Hand(client, self.push, self.settings, post, tell, lambda: sharing.take(False).pushes)
             self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control"):
             self.control = ControlPanel(gui, post, tell, choices, truth)

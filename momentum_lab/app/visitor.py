@@ -31,9 +31,9 @@ from momentum_lab.app.wire import Frame, Truth, rows_of
 from momentum_lab.app.world import add_floor, add_world
 from momentum_lab.errors import InputError
 from momentum_lab.events import Event
+from momentum_lab.fall import Fall
 from momentum_lab.recording import Sample
 from momentum_lab.run_file import Run
-from momentum_lab.session import Fall
 from momentum_lab.status import status_of
 
 

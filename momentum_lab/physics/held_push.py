@@ -45,7 +45,8 @@ class Pushed:
 
     def _with_held(self, duration: float) -> tuple[Push, ...]:
         return tuple(
-            msgspec.structs.replace(push, duration=duration) if push is self.held else push for push in self.all
+            msgspec.structs.replace(push, duration=duration) if push is self.held else push
+            for push in self.all
         )
 
     def _without_held(self) -> tuple[Push, ...]:

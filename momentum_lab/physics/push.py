@@ -195,5 +195,7 @@ def pushed_frame(robot: RobotModel, push: Push) -> int:
         return robot.trunk
     link = robot.spec.push_bodies.get(push.body, push.body)
     if not robot.model.existFrame(link, pin.FrameType.BODY):
-        raise InputError("body", push.body, f"one of {', '.join(robot.spec.push_bodies)}, or a link of the robot")
+        raise InputError(
+            "body", push.body, f"one of {', '.join(robot.spec.push_bodies)}, or a link of the robot"
+        )
     return robot.frame(link)
