@@ -97,6 +97,8 @@ class Hand:
         self._notes: deque[Note] = deque()
         self._acting = threading.Lock()
         self._pull: Pull | None = None
+        # How long what was held has lasted, and how long pushes were before the panel showed that, s.
+        self._durations = (0.0, 0.0)
         self.playing = True
 
     def reach(self, reach: Reach) -> None:
@@ -145,6 +147,9 @@ class Hand:
         if note.phase == "end":
             self._let_go(pull, force)
             return
+        if pull.held is not None and "push" in self._settings.shown:
+            self._scene.clear()  # the push itself is in the picture
+            return
         words = _words(pull, force, scale, self.playing)
         self._scene.draw(start, np.append(scale.length(force), 0.0), words, reach.size)
 
@@ -167,7 +172,7 @@ class Hand:
             self._post(LetGo())
             self._remember()
         elif not pull.holds and force.any():
-            push = pull.grip.pulse(force, self._panel.duration)
+            push = pull.grip.pulse(force, self._duration())
             self._panel.show(push)
             self._panel.give(push)
 
@@ -176,8 +181,15 @@ class Hand:
         time.sleep(_SETTLED)
         pieces = chain_of(self._pushes())
         if pieces and pieces[-1].point is not None and self.playing:
+            before = self._duration()
             self._panel.show(mean_of(pieces))
+            self._durations = (self._panel.duration, before)
             self._panel.can_repeat(ApplyPushes(from_now(pieces)))
+
+    def _duration(self) -> float:
+        """How long a push is to last, s: what the panel says, unless that is how long something was held."""
+        shown, before = self._durations
+        return before if self._panel.duration == shown else self._panel.duration
 
     def _drop(self) -> None:
         """Open the hand without a push."""

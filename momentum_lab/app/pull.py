@@ -139,7 +139,7 @@ class Grip:
         return self._push(float(round(float(np.linalg.norm(force)))), _degrees(force, 1.0), duration)
 
     def piece(self, force: np.ndarray, strongest: float) -> Push:
-        """A push to be held, in steps that are small against the strongest one (N): a resting hand makes no events."""
+        """A push to be held, in steps that are small against the strongest one, N: each change is an event."""
         step = strongest / _STEPS
         strength = round(float(np.linalg.norm(force)) / step) * step
         return self._push(min(round(strength, 3), strongest), _degrees(force, _TURN), 1.0)
@@ -184,7 +184,8 @@ def mean_of(pieces: tuple[Push, ...]) -> Push:
     seconds = math.fsum(piece.duration for piece in pieces)
     force = np.sum([piece.impulse * piece.direction[:2] for piece in pieces], axis=0) / seconds
     last = pieces[-1]
-    assert last.body is not None and last.point is not None
+    assert last.body is not None
+    assert last.point is not None
     return Grip(last.body, last.point).pulse(force, min(round(seconds, 3), MAX_DURATION))
 
 

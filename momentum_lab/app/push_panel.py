@@ -62,6 +62,7 @@ class PushPanel:
             icon=viser.Icon.EYE,
             hint="Tries the push on a copy of the robot and draws where its CoM and capture point would go.",
         )
+        self._size = gui.add_html("")
         gui.add_html(html.sentence("Or hold Shift and drag the robot in the picture."))
         self._by_hand: Any = gui.add_dropdown(
             "by hand",
@@ -69,7 +70,6 @@ class PushPanel:
             hint="Shift and drag: pulse pushes for the duration below when you let go, "
             "hold pulls for as long as you do. Back where you began: no push.",
         )
-        self._size = gui.add_html("")
         self._force: Any = gui.add_slider("force (N)", 0.0, 500.0, 1.0, 200.0, hint="Peak force of the push.")
         self._duration: Any = gui.add_slider(
             "duration (ms)", 10.0, 1000.0, 10.0, _DURATION, hint="How long the push lasts."
