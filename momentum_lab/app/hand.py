@@ -18,7 +18,7 @@ import numpy as np
 import viser
 
 from momentum_lab.app.hand_scene import HandScene
-from momentum_lab.app.pull import Eye, Grip, Scale, chain_of, finite, from_now, grip, mean_of, pulled
+from momentum_lab.app.pull import Grip, Scale, chain_of, finite, from_now, grip, mean_of, pulled
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot
@@ -58,7 +58,7 @@ class Note:
     phase: str
     start: object
     end: object
-    eye: tuple[object, object]
+    eye: object
 
 
 @dataclass(slots=True)
@@ -105,9 +105,8 @@ class Hand:
         """Let a robot be grabbed."""
 
         async def note(joint: int, event: Any) -> None:
-            camera = event.client.camera
-            eye = (camera.position, camera.wxyz)
-            self.note(Note(reach, joint, event.phase, event.start_position, event.end_position, eye))
+            places = (event.start_position, event.end_position, event.client.camera.position)
+            self.note(Note(reach, joint, event.phase, *places))
             asyncio.get_running_loop().run_in_executor(None, self.act)
 
         reach.body.on_drag(note)
@@ -131,7 +130,7 @@ class Hand:
 
     def _take(self, note: Note) -> None:
         start, end = finite(note.start, 3, "drag"), finite(note.end, 3, "drag")
-        eye = Eye.of(*note.eye)
+        eye = finite(note.eye, 3, "camera")
         if note.phase == "start":
             self._drop()
             held = self._panel.by_hand == "hold" and self.playing

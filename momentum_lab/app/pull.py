@@ -25,32 +25,6 @@ _STEPS, _TURN = 100, 5.0
 _DIGITS = 3
 
 
-@dataclass(frozen=True, slots=True)
-class Eye:
-    """From where a browser tab looks.
-
-    Attributes:
-        position: in the world (3,), m.
-        rotation: its axes in the world (3, 3): x to the right of the picture, y down, z into it.
-    """
-
-    position: np.ndarray
-    rotation: np.ndarray
-
-    @classmethod
-    def of(cls, position: object, wxyz: object) -> Eye:
-        """One at a position (3,), m, turned by a quaternion (4,).
-
-        Raises:
-            InputError: a browser says what is no position or no rotation.
-        """
-        w, x, y, z = finite(wxyz, 4, "camera")
-        if math.hypot(w, x, y, z) < 1e-6:
-            raise InputError("camera", (w, x, y, z), "a quaternion")
-        turned = pin.Quaternion(w, x, y, z).normalized().toRotationMatrix()
-        return cls(finite(position, 3, "camera"), turned)
-
-
 def finite(value: object, count: int, name: str) -> np.ndarray:
     """A browser's numbers (count,).
 
@@ -66,28 +40,22 @@ def finite(value: object, count: int, name: str) -> np.ndarray:
     return numbers
 
 
-def pulled(eye: Eye, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+def pulled(eye: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     """How far a hand has pulled a point over the horizontal plane through it (2,), m.
 
-    The pointer's ray meets that plane at start + a (1 + F/D cos p) r + F f with F = b / (sin p - b/D cos p), where
-    a and b are how far the pointer has moved to the right and up in the plane across the view through the point,
-    D is how deep that plane lies, p how far the view points down, r the picture's right and f its forward. For a
-    flat view F is limited.
+    With g from the eye to the point and d from the point to the pointer, the pointer's ray meets the plane at
+    start + d + s (g + d), s = d_z / (-g_z - d_z). A ray that is nearly level meets it far away or never: the
+    denominator stays above that of a view from 20 degrees above.
 
     Args:
-        eye: from where the hand's owner looks.
+        eye: from where the hand's owner looks (3,), m.
         start: the grabbed point (3,), m.
-        end: the pointer in the plane across the view through that point (3,), m.
+        end: a point of the pointer's ray (3,), m; viser's is in the plane across the view through the point.
     """
-    right, up, into = eye.rotation[:, 0], -eye.rotation[:, 1], eye.rotation[:, 2]
-    forward = into[:2] + up[:2]
-    forward = forward / max(float(np.linalg.norm(forward)), 1e-9)
-    depth = max(float((start - eye.position) @ into), 1e-3)
-    down, level = -float(into[2]), float(np.linalg.norm(into[:2]))
-    a, b = float((end - start) @ right), float((end - start) @ up)
-    away = b / max(down - b / depth * level, _STEEP)
-    aside = a * max(0.0, 1.0 + away / depth * level)
-    distance: np.ndarray = aside * right[:2] + away * forward
+    sight, moved = start - eye, end - start
+    least = max(_STEEP * float(np.linalg.norm(sight)), 1e-3)
+    further = float(moved[2]) / max(-float(sight[2] + moved[2]), least)
+    distance: np.ndarray = (moved + further * (sight + moved))[:2]
     return distance
 
 
