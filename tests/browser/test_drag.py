@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Locator, expect
 
 from momentum_lab.events import ApplyPush, HoldPush, LetGo
 from momentum_lab.recording import load_trace
@@ -34,6 +34,11 @@ def pull(lab: LabPage, end: tuple[int, int]) -> None:
         x, y = np.array(TRUNK) + part * (np.array(end) - TRUNK)
         lab.page.mouse.move(float(x), float(y))
         lab.page.wait_for_timeout(200)
+
+
+def slider(lab: LabPage, label: str) -> Locator:
+    uuid = lab.page.locator(f"label:text-is('{label}')").first.get_attribute("for", timeout=PATIENCE)
+    return lab.page.locator(f"[id='{uuid}'] [role=slider]").first
 
 
 def changed(before: np.ndarray, after: np.ndarray, clip: dict[str, int]) -> float:
@@ -63,7 +68,7 @@ def test_a_hand_in_the_picture(served: Served, open_page: Opener, tmp_path: Path
     lab.expect_com_travel(0.5)
     told = lab.page.get_by_text("Last push: ").inner_text()
     force = float(re.findall(r"([0-9]+) N", told)[0])
-    expect(lab.page.get_by_label("force (N)").last).to_have_value(f"{force:.0f}", timeout=PATIENCE)
+    expect(slider(lab, "force (N)")).to_have_attribute("aria-valuenow", f"{force:.0f}", timeout=PATIENCE)
     lab.expect_status("standing")
 
     lab.page.get_by_role("combobox", name="by hand").evaluate("b => b.click()")
@@ -75,7 +80,7 @@ def test_a_hand_in_the_picture(served: Served, open_page: Opener, tmp_path: Path
     lab.page.screenshot(path=OUTPUT / "drag_hold.png", timeout=PATIENCE)
     lab.page.mouse.up()
     lab.page.keyboard.up("Shift")
-    expect(lab.page.get_by_label("duration (ms)").last).not_to_have_value("100", timeout=PATIENCE)
+    expect(slider(lab, "duration (ms)")).not_to_have_attribute("aria-valuenow", "100", timeout=PATIENCE)
     lab.press("k")
     lab.expect_text("paused")
 
