@@ -22,6 +22,7 @@ FLOORS: tuple[frozenset[str], ...] = (
     frozenset({"control", "physics"}),
     frozenset(
         {
+            "active_bounds",
             "beside",
             "choices",
             "effects",

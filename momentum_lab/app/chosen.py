@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
+from momentum_lab.app.wire import Truth
 from momentum_lab.beside import Beside
 from momentum_lab.control.gains import declared_gains, with_gains
 from momentum_lab.control.ground_sense import GroundSense
@@ -19,6 +20,7 @@ from momentum_lab.events import (
     SetAngularGoal,
     SetDirections,
     SetGain,
+    SetGains,
     SetGroundSense,
     SetMismatch,
     SetMotion,
@@ -63,7 +65,19 @@ class Chosen:
         events += [SetMismatch(*change) for change in changes(self.mismatch, other.mismatch)]
         if other.angular_goal != self.angular_goal:
             events.append(SetAngularGoal(other.angular_goal))
-        return events + [SetGain(name, value) for name, value in other.gains.items() if value != gains[name]]
+        changed = {name: value for name, value in other.gains.items() if value != gains[name]}
+        if len(changed) > 1:
+            return [*events, SetGains(changed)]
+        return events + [SetGain(name, value) for name, value in changed.items()]
+
+    def differing(self, other: Chosen) -> frozenset[str]:
+        """Names of the choices, gains and model errors in which these choices are others."""
+        names = {name for name in CHOICES if getattr(self, name) != getattr(other, name)} - {
+            "gains",
+            "mismatch",
+        }
+        gains = {name for name in self.gains if self.gains[name] != other.gains.get(name)}
+        return frozenset(names | gains | {name for name, _ in changes(other.mismatch, self.mismatch)})
 
     def beside(self, beside: Beside) -> Chosen:
         """The choices for a robot beside the one with these choices.
@@ -84,6 +98,15 @@ class Chosen:
             planner=self.planner if self.planner in entry.planners else OWN,
             gains=values_of(with_gains(entry.gains, {**same, **beside.gains})),
         )
+
+
+CHOICES = tuple(field.name for field in fields(Chosen))
+"""The names of all choices; `Truth` has them under the same names."""
+
+
+def chosen_in(truth: Truth) -> Chosen:
+    """The choices in what is the case."""
+    return Chosen(**{name: getattr(truth, name) for name in CHOICES})
 
 
 def chosen_of(session: Session, waiting: Iterable[SessionEvent]) -> Chosen:

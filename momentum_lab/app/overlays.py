@@ -30,6 +30,8 @@ _PUSH_SHOWN = 1.0
 PUSH_LENGTH = 1.4
 """How long the arrow of a push is that is as strong as the robot's weight, in CoM heights."""
 
+# And how far above the tip of one that pulls its label sits, in CoM heights.
+_LABEL_ABOVE = 0.05
 # Labels of lines on the ground sit beside them, on the side from which the lab looks first; in CoM heights.
 _BESIDE = 0.13
 _SIDE = np.array([0.47, -0.88])
@@ -180,14 +182,16 @@ def _push(sample: Sample, picture: Picture, ground: float) -> list[Mark]:
     weight = picture.robot.mass * GRAVITY
     arrow = PUSH_LENGTH * (com[2] - ground) * picture.arrow_scale * force / weight * push.direction
     end = _pushed_point(sample, picture.robot, push, ground)
-    if push.point is not None:
-        end = end + arrow  # a hand pulls at its point
+    at = end - arrow
+    if push.point is not None:  # a hand pulls at its point, and the words must not hide a short arrow
+        end = end + arrow
+        at = end + _LABEL_ABOVE * com[2] * np.array([0.0, 0.0, 1.0])
     return [
         Mark(
             "push",
             (_point(end - arrow), _point(end)),
             text=f"{force:.0f} N for {1e3 * push.duration:.0f} ms",
-            at=_point(end - arrow if push.point is None else end),
+            at=_point(at),
         )
     ]
 

@@ -111,7 +111,8 @@ class Playback:
             case Foresee(push):
                 self._foresee(push)
             case RunAgain():
-                self._begin(Run(once_more(self.session, self._waiting, self._difference)))
+                coming = self._opened.coming(self.session)
+                self._begin(once_more(self.session, self._waiting, coming, self._difference))
             case SelectRobot(name):
                 self._begin(Run(with_robot(name, self.session, self._waiting, self._difference)))
             case LoadScenario(name):

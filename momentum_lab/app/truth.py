@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import msgspec
 import numpy as np
 
-from momentum_lab.app.chosen import chosen_of
+from momentum_lab.app.chosen import CHOICES, chosen_of
 from momentum_lab.app.wire import Fallen, Opened, RunTaken, Truth
 from momentum_lab.beside import Beside
 from momentum_lab.effects import feet_named
@@ -64,13 +64,6 @@ def truth_of(
         run=clock.run,
         scenario=session.scenario.name,
         robot=session.scenario.robot,
-        controller=chosen.controller,
-        priority=chosen.priority,
-        controlled=chosen.controlled,
-        planner=chosen.planner,
-        motion=chosen.motion,
-        angular_goal=chosen.angular_goal,
-        gains=chosen.gains,
         playing=clock.playing,
         speed=clock.speed,
         real_time_factor=clock.real_time_factor,
@@ -82,12 +75,11 @@ def truth_of(
         friction=_friction(session, waiting, time),
         uneven=not session.ground.is_floor,
         floor=float(session.ground.floor.origin[2]),
-        ground_sense=chosen.ground_sense,
-        mismatch=chosen.mismatch,
         behind=clock.behind,
         first_push=min(_begun(session, time), key=_start, default=None),
         beside=beside,
         opened=opened,
+        **{name: getattr(chosen, name) for name in CHOICES},
     )
 
 

@@ -27,14 +27,13 @@ from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot, RobotShelf
 from momentum_lab.app.share_panel import Sharing
 from momentum_lab.app.snapshot import view_of
+from momentum_lab.app.telling import told
 from momentum_lab.app.wire import Frame, Truth, rows_of
 from momentum_lab.app.world import add_floor, add_world
 from momentum_lab.errors import InputError
 from momentum_lab.events import Event
-from momentum_lab.fall import Fall
 from momentum_lab.recording import Sample
 from momentum_lab.run_file import Run
-from momentum_lab.status import status_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,9 +246,7 @@ class Visitor:
 
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
         truth = frame.truth
-        fall = None if truth.fall is None else Fall(truth.fall.time, truth.fall.reason)
-        status = status_of(sample, loaded.model, fall, truth.failure, truth.stopped)
-        panels.status.follow(truth, status, sample.number("time"))
+        panels.status.follow(truth, told(frame, sample, loaded), sample.number("time"))
         panels.control.follow(truth)
         panels.learn.follow(truth, sample.number("time"), frame.lesson)
         panels.share.follow(truth)
@@ -257,6 +254,7 @@ class Visitor:
         panels.mismatch.follow(truth)
         panels.control.see(sample)
         panels.hand.playing = truth.playing
+        panels.control.bounds.see(sample, loaded.model, truth)
         if truth.fall is None:
             panels.push.see(sample)
         panels.push.refresh()
