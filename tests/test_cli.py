@@ -164,7 +164,7 @@ BAD_VALUES = [
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
     (
         "fly",
-        "command: got fly; allowed: app, run, limit, report, replay, lesson, figure, list, equations, "
+        "command: got fly; allowed: app, run, limit, report, record, replay, lesson, figure, list, equations, "
         "robot-check, bench",
     ),
 ]

@@ -128,11 +128,25 @@ def _report(run: FinishedRun) -> bytes:
     return report(run)
 
 
+def _recording(run: FinishedRun) -> bytes:
+    from momentum_lab.app.recorder import html_file
+
+    return html_file(run)
+
+
+def _viser(run: FinishedRun) -> bytes:
+    from momentum_lab.app.recorder import viser_file
+
+    return viser_file(run)
+
+
 MAKERS: dict[str, Callable[[FinishedRun], bytes]] = {
     "run": lambda run: encoded(run.run),
     "trace": _trace,
     "table": _table,
     "plots": _plots,
     "report": _report,
+    "recording": _recording,
+    "viser": _viser,
 }
-"""Kind -> what makes it; matplotlib is loaded by those that draw."""
+"""Kind -> what makes it; matplotlib and viser are loaded by those that need them."""

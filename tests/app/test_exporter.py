@@ -55,7 +55,13 @@ def test_a_trace_made_elsewhere(playback, taken):
 def test_every_other_kind(taken):
     assert decoded("r.json", made("run", taken)) == taken.run
     assert made("table", taken).startswith(b"time,q.0,")
+    assert b"__VISER_EMBED_DATA__" in made("recording", taken)
     assert Image.open(io.BytesIO(made("plots", taken))).format == "PNG"
+
+
+def test_a_recording_made_elsewhere_is_the_one_made_here(taken):
+    warm_up()
+    assert made_elsewhere("viser", taken) == made("viser", taken)
 
 
 def test_what_cannot_be_made_is_told():
