@@ -10,6 +10,7 @@ from momentum_lab.app.foresight import SECONDS
 from momentum_lab.app.foresight_scene import ForesightScene
 from momentum_lab.app.ghost import Ghost, KeptRun
 from momentum_lab.app.plots import Plots
+from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.runs_panel import RunsPanel
 from momentum_lab.app.side_scene import SideScene
@@ -46,6 +47,11 @@ class Comparison:
     def spread(self) -> np.ndarray | None:
         """From the first robot to the one beside it (2,), m; None without one."""
         return None if self._side is None else self._side.offset
+
+    @property
+    def other_body(self) -> RobotScene | None:
+        """The meshes of the robot beside the first; None without one."""
+        return None if self._side is None else self._side.body
 
     @property
     def other_fell(self) -> bool:

@@ -28,7 +28,8 @@ Control tab decides.
 The line from the CoM to the **CMP** (▲) is parallel to the ground reaction force. The bar from CoP to CMP is the
 lever with which that force turns the body: the longer it is, the faster angular momentum changes.
 
-Drag to turn the picture, right-drag to move it, scroll to come closer.
+Drag to turn the picture, right-drag to move it, scroll to come closer. **Shift + drag** on the robot pulls it
+there: the arrow shows the force, letting go pushes (*pulse*) or ends the push (*hold*, in the Push tab).
 
 **Without a mouse.** Tab and Shift+Tab go from widget to widget, arrows move a slider, Home and End take it to its
 ends. Once the picture has the focus, W, A, S, D, Q and E move the camera; the View tab has four fixed views.

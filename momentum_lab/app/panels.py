@@ -13,6 +13,7 @@ from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.demo_panel import DemoPanel
 from momentum_lab.app.demo_stage import DemoStage
 from momentum_lab.app.ground_panel import GroundPanel
+from momentum_lab.app.hand import Hand
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.learn_panel import LearnPanel
 from momentum_lab.app.lesson_wire import LessonEvent
@@ -87,6 +88,7 @@ class Panels:
         with group.add_tab("Push"):
             self.push = PushPanel(gui, post, tell, redraw)
             SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
+            self.hand = Hand(client, self.push, self.settings, post, tell, lambda: sharing.take(False).pushes)
             self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control"):
             self.control = ControlPanel(gui, post, tell, choices, truth)

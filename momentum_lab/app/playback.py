@@ -17,6 +17,7 @@ from momentum_lab.events import (
     Branch,
     Event,
     Foresee,
+    HoldPush,
     LoadScenario,
     LookBack,
     MoveGround,
@@ -222,7 +223,7 @@ class Playback:
 
     def _pass_on(self, event: SessionEvent) -> None:
         self._post(event)
-        if isinstance(event, ApplyPush | ApplyPushes | MoveGround | StopGround | SetFriction):
+        if isinstance(event, ApplyPush | ApplyPushes | HoldPush | MoveGround | StopGround | SetFriction):
             self._behind = 0  # it acts now, and has to be seen
         if isinstance(event, Reset):
             self._behind = 0

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import viser
 
 from momentum_lab.app.camera import LOOSE, START_VIEW, TIGHT, VIEWS, Camera
@@ -17,6 +18,7 @@ from momentum_lab.app.control_panel import Choices
 from momentum_lab.app.demo_stage import DemoStage
 from momentum_lab.app.exporter import finished
 from momentum_lab.app.film import film
+from momentum_lab.app.hand import Reach
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
@@ -51,6 +53,7 @@ class Stage:
         marks: its marks in the scene.
         plates: the plates under its feet.
         camera: what looks at it.
+        size: height of its CoM as it began, m.
     """
 
     name: str
@@ -59,6 +62,7 @@ class Stage:
     marks: MarkScene
     plates: PlateScene
     camera: Camera
+    size: float
 
 
 class Visitor:
@@ -170,6 +174,7 @@ class Visitor:
             changed = self._comparison.draw(frame, sample, panels.settings)
         if changed:
             self._look(START_VIEW)
+            self._reach_other(panels, stage)
         self._demo.after(stage.camera, self._comparison.spread, frame.demo)
         self._client.flush()
         self._draw_panels(panels, frame, loaded, sample)
@@ -186,7 +191,7 @@ class Visitor:
         body = RobotScene(self._client, loaded, sample["q"])
         marks, camera = MarkScene(self._client, size), Camera(self._client, size)
         plates = PlateScene(self._client, loaded.model)
-        self._stage = Stage(truth.robot, loaded, body, marks, plates, camera)
+        self._stage = Stage(truth.robot, loaded, body, marks, plates, camera, size)
         self._look(START_VIEW)
         if self._panels is not None:
             self._receive(self._panels, self._stage)
@@ -237,6 +242,7 @@ class Visitor:
     def _receive(self, panels: Panels, stage: Stage) -> None:
         """Fit the panels to the robot on stage."""
         panels.push.set_robot(stage.loaded)
+        panels.hand.reach(Reach(stage.body, stage.loaded, stage.size, np.zeros(3)))
         panels.learn.set_robot(stage.loaded)
         panels.begin_plots(stage.loaded)
         panels.ground.set_feet(stage.loaded.layout.foot_names)
@@ -264,6 +270,12 @@ class Visitor:
         labelled = settings.labelled if alone else settings.labelled & FEW_LABELS
         stage.marks.draw(overlays(sample, picture), settings.shown, labelled)
 
+    def _reach_other(self, panels: Panels, stage: Stage) -> None:
+        """Let the robot beside the first be grabbed, too; what pushes one pushes both."""
+        other, spread = self._comparison.other_body, self._comparison.spread
+        if other is not None and spread is not None:
+            panels.hand.reach(Reach(other, stage.loaded, stage.size, np.append(spread, 0.0)))
+
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
         truth = frame.truth
         panels.status.follow(truth, told(frame, sample, loaded), sample.number("time"))
@@ -273,6 +285,7 @@ class Visitor:
         panels.ground.follow(truth)
         panels.mismatch.follow(truth)
         panels.control.see(sample)
+        panels.hand.playing = truth.playing
         panels.control.bounds.see(sample, loaded.model, truth)
         if truth.fall is None:
             panels.push.see(sample)
