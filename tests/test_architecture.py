@@ -25,6 +25,7 @@ FLOORS: tuple[frozenset[str], ...] = (
             "active_bounds",
             "beside",
             "choices",
+            "patience",
             "effects",
             "fall",
             "scenario",

@@ -7,7 +7,7 @@ import math
 import viser
 
 from momentum_lab.app.demo import Demo
-from momentum_lab.app.patience import LEAST_PATIENCE, MOST_PATIENCE, PATIENCE
+from momentum_lab.patience import LEAST_PATIENCE, MOST_PATIENCE, PATIENCE
 
 
 class DemoPanel:

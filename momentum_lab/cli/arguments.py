@@ -7,7 +7,6 @@ import re
 from typing import Any, NoReturn
 
 from momentum_lab import __version__
-from momentum_lab.app.patience import LEAST_PATIENCE, MOST_PATIENCE, PATIENCE
 from momentum_lab.cli.values import (
     ABOVE_ZERO,
     controlled_directions,
@@ -18,6 +17,7 @@ from momentum_lab.cli.values import (
     whole_number,
 )
 from momentum_lab.errors import InputError
+from momentum_lab.patience import LEAST_PATIENCE, MOST_PATIENCE, PATIENCE
 from momentum_lab.physics.plate import MAX_FRICTION
 from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
 from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
