@@ -24,7 +24,7 @@ RUNS = {"loose": small_push(0.2), "even": small_push(1.0), "tight": small_push(2
 
 def ratio(session):
     """The damping ratio zeta."""
-    return session.gains.linear_damping / (2.0 * session.gains.linear_stiffness**0.5)
+    return session.choices.gains.linear_damping / (2.0 * session.choices.gains.linear_stiffness**0.5)
 
 
 def way(session):

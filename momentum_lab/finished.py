@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from momentum_lab.choices import Choices
 from momentum_lab.events import LoggedEvent
-from momentum_lab.physics.mismatch import Mismatch
+from momentum_lab.fall import Fall
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Recording
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.run_file import Run, run_of
 from momentum_lab.scenario import Scenario
-from momentum_lab.session import Fall, Session
+from momentum_lab.session import Session
 from momentum_lab.start import stance_of
 
 
@@ -27,14 +27,10 @@ class FinishedRun:
         robot: who was pushed.
         recording: what happened.
         time: how long it has lasted, s.
-        controller: who kept the balance in the end.
-        planner: what made the momentum rates in the end.
-        gains: all its gains in the end, an instance of the controller's dataclass.
-        priority: in the end, 0 linear, 1 angular.
+        choices: what was chosen in the end.
         pushes: all pushes, sized.
         fall: when and why the robot has fallen; None: it has not.
         solver_failures: ticks on which the fallback torque was used.
-        mismatch: how the real robot differed from its model in the end.
         com_speed: of the CoM against the ground under the feet at the last sample, m/s.
     """
 
@@ -42,14 +38,10 @@ class FinishedRun:
     robot: RobotModel
     recording: Recording
     time: float
-    controller: str
-    planner: str
-    gains: Any
-    priority: float
+    choices: Choices
     pushes: tuple[Push, ...]
     fall: Fall | None
     solver_failures: int
-    mismatch: Mismatch
     com_speed: float
 
     @classmethod
@@ -60,14 +52,10 @@ class FinishedRun:
             session.robot,
             session.recording,
             session.time,
-            session.controller,
-            session.planner,
-            session.gains,
-            session.priority,
+            session.choices,
             session.pushes,
             session.fall,
             session.solver_failures,
-            session.mismatch,
             com_speed(session),
         )
 

@@ -277,9 +277,13 @@ def load_trace(path: Path | BinaryIO, name: str = "") -> Trace:
         joint_names, foot_names = arrays.pop("joint_names"), arrays.pop("foot_names")
         arrays.pop("slack_names", None)
         meta = json.loads(str(arrays.pop("meta")))
+    except (FileNotFoundError, IsADirectoryError, PermissionError) as error:
+        raise InputError(
+            "recording", name or path, f"a .npz file that can be read ({error.strerror})"
+        ) from error
     except (OSError, KeyError, ValueError, TypeError, EOFError, BadZipFile, zlib.error) as error:
         raise InputError(
-            "recording", name or path, f"a .npz file that this lab has written ({error})"
+            "recording", name or path, "a .npz file that this lab has written, whole and unchanged"
         ) from error
     return Trace(arrays, tuple(joint_names.tolist()), tuple(foot_names.tolist()), meta)
 

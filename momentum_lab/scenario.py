@@ -133,7 +133,10 @@ def load_scenario(name: str) -> Scenario:
     try:
         data = msgspec.toml.decode(path.read_bytes())
     except OSError as error:
-        allowed = f"one of {', '.join(scenario_names())}, or the path of a .toml file that can be read"
+        if name.endswith(".toml"):
+            allowed = f"a .toml file that can be read ({error.strerror})"
+        else:
+            allowed = f"one of {', '.join(scenario_names())}, or the path of a .toml file"
         raise ScenarioError("scenario", name, allowed) from error
     except (ValueError, RecursionError) as error:
         raise ScenarioError("scenario", path, f"a TOML file that describes a scenario ({error})") from error

@@ -8,22 +8,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-import msgspec
 import numpy as np
 
+from momentum_lab.choices import Choices
 from momentum_lab.control.controller import Controller, ControlOutput
 from momentum_lab.control.fallback import limp
-from momentum_lab.control.gains import with_gains
-from momentum_lab.control.ground_sense import GroundSense, felt_ground, ground_sense
+from momentum_lab.control.ground_sense import felt_ground
 from momentum_lab.control.handover import Handover
-from momentum_lab.control.motion import AngularGoal, MovingGoal, reach_of
-from momentum_lab.control.planner import OWN
-from momentum_lab.control.registry import check_planner, controller_entry
+from momentum_lab.control.motion import MovingGoal
+from momentum_lab.control.registry import controller_entry
 from momentum_lab.control.standing import StandingGoal
-from momentum_lab.errors import InputError, SimulationError
+from momentum_lab.effects import ground_after, pushes_after, sized
+from momentum_lab.errors import SimulationError
 from momentum_lab.events import (
-    ApplyPush,
-    ApplyPushes,
     LoggedEvent,
     MoveGround,
     Reset,
@@ -33,21 +30,18 @@ from momentum_lab.events import (
     SetAngularGoal,
     SetDirections,
     SetFriction,
-    SetGain,
-    SetGains,
     SetGroundSense,
     SetMismatch,
     SetMotion,
-    SetPriority,
     StopGround,
 )
-from momentum_lab.momentum.directions import Directions, directions
+from momentum_lab.fall import Fall, fall_of
 from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.observe import Tick, observe
 from momentum_lab.physics.engines import check_ground, check_mismatch, world
-from momentum_lab.physics.ground import Ground, checked_friction
-from momentum_lab.physics.mismatch import EXACT, Mismatch, real_robot, with_error
+from momentum_lab.physics.ground import Ground
+from momentum_lab.physics.mismatch import EXACT, real_robot
 from momentum_lab.physics.motors import Line, delayed, ticks_late
 from momentum_lab.physics.push import Push
 from momentum_lab.physics.sensors import measured
@@ -59,23 +53,8 @@ from momentum_lab.scenario import Scenario
 from momentum_lab.start import stance_of, standing_state, starting_state
 from momentum_lab.terrain import terrain
 
-# A robot whose CoM is lower than this part of its standing height has fallen.
-_FALLEN_HEIGHT = 0.6
 # The force sensor of a foot feels the ground from this part of the weight on.
 _FELT = 0.02
-
-
-@dataclass(frozen=True, slots=True)
-class Fall:
-    """When the robot fell, and why it counts as fallen.
-
-    Attributes:
-        time: simulated time, s.
-        reason: in words.
-    """
-
-    time: float
-    reason: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,16 +84,8 @@ class Session:
 
     # What changes while the session runs, and a snapshot holds; everything else is decided when it begins.
     state: State
+    choices: Choices
     pushes: tuple[Push, ...]
-    priority: float
-    controlled: Directions
-    planner: str
-    motion: str
-    angular_goal: AngularGoal
-    ground_sense: GroundSense
-    mismatch: Mismatch
-    controller: str
-    gains: Any
     fall: Fall | None
     solver_failures: int
     last_failure: str | None
@@ -137,28 +108,22 @@ class Session:
     ) -> None:
         self.scenario = scenario
         self.robot = robot or RobotModel.named(scenario.robot)
+        self.choices = Choices.of(scenario)
+        check_mismatch(scenario.engine, scenario.mismatch)
         self.stance = stance_of(self.robot, scenario.stance)
         self._weight = self.robot.mass * GRAVITY
         self._ground = self._first_ground = terrain(scenario, self.robot, self.stance)
+        self._scripted = tuple(sized(push, self.robot) for push in scenario.pushes)
         self._start = starting_state(self.robot, scenario)
-        home = self.robot.at(standing_state(self.robot, scenario))
-        self._standing_height = float(home.com_in_world[2]) - self._ground.at(0.0).height
-        self._goal = StandingGoal(self.robot, home, self.stance)
-        self._home, self._tick_of_run = home, 0
-        self._move(scenario.motion, scenario.angular_goal, 0.0)
-        self._scripted = tuple(self._checked_push(push) for push in scenario.pushes)
+        self._home = self.robot.at(standing_state(self.robot, scenario))
+        self._standing_height = float(self._home.com_in_world[2]) - self._ground.at(0.0).height
+        self._goal = StandingGoal(self.robot, self._home, self.stance)
+        self._move(0.0)
+        self._make_controller()
         self.recording = Recording(Layout.of(self.robot), capacity or self.scenario_ticks)
-        self.priority = scenario.priority
-        self.ground_sense = scenario.ground_sense
-        self.mismatch = scenario.mismatch
-        check_mismatch(scenario.engine, scenario.mismatch)
-        self.controlled = directions(scenario.controlled)
         self.log: list[LoggedEvent] = []
         self.ticks = 0
         self._inbox: deque[SessionEvent] = deque()
-        self.planner = check_planner(scenario.planner, scenario.controller)
-        self._select(scenario.controller)
-        self.gains = with_gains(self.gains, scenario.gains)
         self._stand_up()
 
     @property
@@ -200,6 +165,10 @@ class Session:
         self._check(event)
         self._inbox.append(event)
 
+    def choices_after(self, events: Iterable[SessionEvent]) -> Choices:
+        """What will have been chosen after some events."""
+        return self.choices.after_all(events, self.robot)
+
     def check(self, events: Iterable[SessionEvent]) -> None:
         """Refuse events that could not be done one after the other; none of them is done.
 
@@ -225,7 +194,7 @@ class Session:
         output = self._control(self._believed(dynamics), plates)
         torque, self._line = delayed(self._line, output.torque, self._ticks_late)
         step = self._simulator.step(dynamics, torque, self.pushes, self.time)
-        self.fall = self.fall or self._fall(dynamics, step, plates)
+        self.fall = self.fall or fall_of(self.time, dynamics, step, plates.height, self._standing_height)
         sample = self._record(dynamics, output, step, plates)
         self._advance(output, step)
         return sample
@@ -253,20 +222,20 @@ class Session:
 
     def _believed(self, dynamics: Dynamics) -> Dynamics:
         """The state as the controller sees it: measured, and computed with the robot it believes in."""
-        if self.mismatch == EXACT:
+        if self.choices.mismatch == EXACT:
             return dynamics
         seed, tick = self.scenario.seed, self._tick_of_run
-        return self.robot.at(measured(self.robot, dynamics.state, self.mismatch, seed, tick))
+        return self.robot.at(measured(self.robot, dynamics.state, self.choices.mismatch, seed, tick))
 
     def _control(self, dynamics: Dynamics, plates: FootGround) -> ControlOutput:
         """The controller's answer; a robot that has fallen goes limp."""
         if self.fall is not None:
             return limp(self.robot, dynamics, self._memory)
-        self._known = self._sensed(dynamics, plates)
-        reference = self._goal.reference(dynamics, self._known, self.controlled, self.planner)
+        self._known, choices = self._sensed(dynamics, plates), self.choices
+        reference = self._goal.reference(dynamics, self._known, choices.controlled, choices.planner)
         if self._motion is not None:
             reference = self._motion.applied(reference, self.time - self._motion_start)
-        output = self._controller.compute(dynamics, reference, self.gains, self.priority, self._memory)
+        output = self._controller.compute(dynamics, reference, choices.gains, choices.priority, self._memory)
         if output.failure is not None:
             self.solver_failures += 1
             self.last_failure = output.failure
@@ -275,19 +244,17 @@ class Session:
 
     def _sensed(self, dynamics: Dynamics, plates: FootGround) -> FootGround:
         """The ground as the robot takes it to be: as it is told, or as its soles feel it."""
-        if self.ground_sense == "told":
+        if self.choices.ground_sense == "told":
             return plates
         return felt_ground(dynamics, self._foot_wrench[:, 2] > _FELT * self._weight, self._known)
 
-    def _move(self, name: str, angular_goal: AngularGoal, start: float) -> None:
-        """Let a motion begin at a time of the run, s, or end it; what the torque jumps by is faded."""
-        self.motion, self.angular_goal, self._motion_start = name, angular_goal, start
-        self._taken_over = True
+    def _move(self, start: float) -> None:
+        """Let the chosen motion begin at a time of the run, s, or end it; what the torque jumps by is faded."""
+        name, goal = self.choices.motion, self.choices.angular_goal
+        self._motion_start, self._taken_over = start, True
         self._motion = None
         if name:
-            self._motion = MovingGoal(
-                self.robot, self._home, self.stance, name, angular_goal, self.scenario.timestep
-            )
+            self._motion = MovingGoal(self.robot, self._home, self.stance, name, goal, self.scenario.timestep)
 
     def _without_jump(self, torque: np.ndarray) -> np.ndarray:
         """The controller's torque; after a takeover it starts from the torque that was applied before."""
@@ -307,7 +274,7 @@ class Session:
             output,
             step,
             plates,
-            self.priority,
+            self.choices.priority,
             self.fall is not None,
         )
         observe(self.recording.next_row(), tick)
@@ -323,126 +290,42 @@ class Session:
         if not step.state.is_finite():
             raise SimulationError(f"the state is not finite after {self.time:.3f} s; the recording is kept")
 
-    def _fall(self, dynamics: Dynamics, step: Step, plates: FootGround) -> Fall | None:
-        """When and why the robot has fallen; None while it stands."""
-        if any(step.other_wrench.tolist()):
-            return Fall(self.time, "something other than a sole touched the ground")
-        height = dynamics.com_in_world[2] - plates.height
-        if height < _FALLEN_HEIGHT * self._standing_height:
-            return Fall(self.time, f"the CoM sank to {height:.2f} m")
-        return None
-
     def _check(self, event: SessionEvent) -> None:
         """Refuse what cannot be done, before it is in the inbox."""
-        match event:
-            case SetGain(name, value):
-                with_gains(controller_entry(self._controller_to_be()).gains, {name: value})
-            case SetGains(values):
-                with_gains(controller_entry(self._controller_to_be()).gains, values)
-            case SetPriority(value):
-                _checked_priority(value)
-            case SetDirections(text):
-                directions(text)
-            case SelectPlanner(name):
-                check_planner(name, self._controller_to_be())
-            case SetMotion(name) if name:
-                reach_of(self.robot, name)
-            case SetFriction(value, foot):
-                self._feet_named(foot)
-                checked_friction(value)
-            case MoveGround(motion, foot):
-                ground = self._ground.moving_too(self._feet_named(foot), motion)
-                check_ground(self.scenario.engine, ground)
-            case SetGroundSense(sense):
-                ground_sense(sense)
-            case SetMismatch(name, value):
-                check_mismatch(self.scenario.engine, with_error(self.mismatch, name, value))
-            case SelectController(name):
-                controller_entry(name)
-            case ApplyPush(push):
-                self._checked_push(push)
-            case ApplyPushes(pushes):
-                for push in pushes:
-                    self._checked_push(push)
-
-    def _controller_to_be(self) -> str:
-        """The controller after everything in the inbox has been done."""
-        selected = [event.name for event in self._inbox if isinstance(event, SelectController)]
-        return selected[-1] if selected else self.controller
+        robot, engine = self.robot, self.scenario.engine
+        check_mismatch(engine, self.choices_after(self._inbox).after(event, robot).mismatch)
+        check_ground(engine, ground_after(self._ground, event, robot, self.time))
+        pushes_after(self.pushes, event, robot, self.time)
 
     def _apply(self, event: SessionEvent) -> None:
+        self.choices = self.choices.after(event, self.robot)
+        self.pushes = pushes_after(self.pushes, event, self.robot, self.time)
+        self._ground = ground_after(self._ground, event, self.robot, self.time)
         match event:
-            case SetGain(name, value):
-                self.gains = with_gains(self.gains, {name: value})
-            case SetGains(values):
-                self.gains = with_gains(self.gains, values)
-            case SetPriority(value):
-                self.priority = _checked_priority(value)
-            case SetDirections(text):
-                self.controlled = directions(text)
-                self._taken_over = True
-            case SelectPlanner(name):
-                self.planner = name
-                self._taken_over = True
-            case SelectController(name):
-                self._select(name)
+            case SelectController():
+                self._make_controller()
                 self._memory = self._controller.initial_memory(self._believed(self.dynamics))
                 self._taken_over = True
-            case SetMotion(name):
-                self._move(name, self.angular_goal, self.time)
-            case SetAngularGoal(goal):
-                self._move(self.motion, goal, self._motion_start)
-            case SetFriction(value, foot):
-                self._change(self._ground.as_slippery_as(value, self._feet_named(foot), self.time))
-            case MoveGround(motion, foot):
-                begun = msgspec.structs.replace(motion, start=self.time, stop=None)
-                self._change(self._ground.moving_too(self._feet_named(foot), begun))
-            case StopGround():
-                self._change(self._ground.coming_to_rest(self.time))
-            case SetGroundSense(sense):
-                self.ground_sense = ground_sense(sense)
+            case SetDirections() | SelectPlanner() | SetGroundSense():
                 self._taken_over = True
-            case SetMismatch(name, value):
-                self.mismatch = with_error(self.mismatch, name, value)
+            case SetMotion():
+                self._move(self.time)
+            case SetAngularGoal():
+                self._move(self._motion_start)
+            case SetMismatch() | SetFriction() | MoveGround() | StopGround():
                 self._build()
-            case ApplyPush(push):
-                self._push(msgspec.structs.replace(push, start=0.0))
-            case ApplyPushes(pushes):
-                for push in pushes:
-                    self._push(push)
             case Reset():
                 self._scripted = ()
                 self._stand_up()
 
-    def _push(self, push: Push) -> None:
-        """Let a push begin so long after now as its start says."""
-        sized = self._checked_push(push)
-        self.pushes = (*self.pushes, msgspec.structs.replace(sized, start=self.time + sized.start))
-
-    def _feet_named(self, name: str) -> tuple[int, ...]:
-        """The feet of that name; all for an empty one."""
-        if name and name not in self.robot.foot_names:
-            raise InputError("foot", name, f"one of {', '.join(self.robot.foot_names)}")
-        return tuple(i for i, foot in enumerate(self.robot.foot_names) if name in ("", foot))
-
-    def _change(self, ground: Ground) -> None:
-        """Stand on another ground from now on."""
-        self._ground = ground
-        self._build()
-
     def _build(self) -> None:
         """The robot that is simulated and its world, out of what is the case."""
-        self._real = real_robot(self.robot, self.mismatch)
-        self._ticks_late = ticks_late(self.mismatch.torque_delay_ms, self.scenario.timestep)
+        self._real = real_robot(self.robot, self.choices.mismatch)
+        self._ticks_late = ticks_late(self.choices.mismatch.torque_delay_ms, self.scenario.timestep)
         self._simulator = world(self.scenario.engine, self._real, self._ground, self.scenario.timestep)
 
-    def _select(self, name: str) -> None:
-        entry = controller_entry(name)
-        self.controller = name
-        self.gains = entry.gains
-        if self.planner not in entry.planners:
-            self.planner = OWN
-        self._controller = entry.make(self.robot, self.scenario.timestep)
+    def _make_controller(self) -> None:
+        self._controller = controller_entry(self.choices.controller).make(self.robot, self.scenario.timestep)
 
     def _stand_up(self) -> None:
         """The robot where it started, the clock at zero."""
@@ -461,17 +344,3 @@ class Session:
         self._torque = self._handover = None
         self._taken_over = False
         self.recording.clear()
-
-    def _checked_push(self, push: Push) -> Push:
-        """The push with its force, if the robot has the body it names."""
-        if push.body is not None and push.body not in self.robot.spec.push_bodies:
-            raise InputError("body", push.body, f"one of {', '.join(self.robot.spec.push_bodies)}")
-        return push.sized_for(self.robot.mass)
-
-
-def _checked_priority(value: float) -> float:
-    if not math.isfinite(value) or not 0.0 <= value <= 1.0:
-        raise InputError(
-            "priority", value, "a number from 0 (keep linear momentum) to 1 (keep angular momentum)"
-        )
-    return float(value)

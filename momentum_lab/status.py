@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import pinocchio as pin
 
+from momentum_lab.active_bounds import TORQUE, Active, heading_of, pressed_feet
+from momentum_lab.control.sole_bounds import FRICTION, HEEL, LEAST, TOES, TWIST
+from momentum_lab.fall import Fall
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.recording import Sample
 from momentum_lab.robot.model import RobotModel
-from momentum_lab.session import Fall
 
 Kind = Literal["standing", "border", "lifted", "solver", "fallen", "stopped"]
 StatusColor = Literal["green", "orange", "vermillion", "black"]
@@ -29,8 +31,15 @@ _COLORS: dict[Kind, StatusColor] = {
 _LOST = 5e-3
 # A desired CoP closer than this to the granted one is the same, m.
 _SAME_POINT = 1e-3
-# A foot that carries less than this part of the weight only touches.
-_CARRIES = 2e-3
+SOME_LIMIT = "foot forces at their limit"
+"""What is said where nothing is known that stops the forces."""
+
+# Bounds that stop forces wherever the CoP is.
+_OF_FORCES = frozenset({FRICTION, TWIST, LEAST, TORQUE})
+_HEELS = "CoP on the heels"
+# Bounds of single feet that stop the CoP of all at a border; the sides have edges of one foot or of both.
+_EDGES = {TOES: frozenset({TOES}), _HEELS: frozenset({HEEL})}
+_SIDES = frozenset(f"CoP on the {side} edge" for side in ("inner", "outer", "left", "right"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +63,7 @@ def status_of(
     fall: Fall | None = None,
     failure: str | None = None,
     stopped: str | None = None,
+    held: Sequence[Active] | None = None,
 ) -> Status:
     """The most important thing to say about a sample.
 
@@ -63,6 +73,7 @@ def status_of(
         fall: when and why it has fallen; None while it stands.
         failure: why the last solve had no answer; said when it concerns this sample.
         stopped: why the simulation has ended; None while it goes on.
+        held: the bounds that are active; None: not known.
     """
     if stopped is not None:
         return _status("stopped", f"stopped: {stopped}")
@@ -72,7 +83,7 @@ def status_of(
         return _status("solver", f"solver: {failure}")
     lost = lost_goals(sample, robot.mass)
     if lost:
-        return _status("border", f"{_where(sample)}: {lost}")
+        return _status("border", f"{_where(sample, held)}: {lost}")
     return _footing(sample, robot)
 
 
@@ -83,8 +94,7 @@ def carrying_feet(sample: Sample, mass: float) -> tuple[int, ...]:
         sample: the sample.
         mass: the robot's, kg.
     """
-    least = _CARRIES * mass * GRAVITY
-    return tuple(foot for foot, wrench in enumerate(sample["foot_wrench_measured"]) if wrench[2] > least)
+    return pressed_feet(sample["foot_wrench_measured"], mass)
 
 
 def lost_goals(sample: Sample, mass: float) -> str:
@@ -103,23 +113,29 @@ def lost_goals(sample: Sample, mass: float) -> str:
     return " and ".join(words)
 
 
-def _where(sample: Sample) -> str:
-    """Which border stops the CoP, seen from the robot."""
+def _where(sample: Sample, held: Sequence[Active] | None) -> str:
+    """What stops the forces: the border that the CoP should cross if it is there, or else another active bound."""
+    border = _border(sample)
+    if held is None:
+        return border or SOME_LIMIT
+    active = {bound.what for bound in held}
+    if border and not _EDGES.get(border, _SIDES).isdisjoint(active):
+        return border
+    forces = (f"{bound.what} ({bound.holder})" for bound in held if bound.what in _OF_FORCES)
+    return next(forces, border or SOME_LIMIT)
+
+
+def _border(sample: Sample) -> str:
+    """Which border the desired CoP is beyond, seen from the robot; empty if it is the granted one."""
     beyond = sample["cop_desired"] - sample["cop_admissible"]
     if not float(np.linalg.norm(beyond)) > _SAME_POINT:
-        return "foot forces at their limit"
-    heading = _heading(sample)
+        return ""
+    heading = heading_of(sample)
     forward = beyond[0] * math.cos(heading) + beyond[1] * math.sin(heading)
     left = beyond[1] * math.cos(heading) - beyond[0] * math.sin(heading)
     if abs(forward) >= abs(left):
-        return "CoP on the toes" if forward > 0.0 else "CoP on the heels"
+        return TOES if forward > 0.0 else _HEELS
     return f"CoP on the {'left' if left > 0.0 else 'right'} border"
-
-
-def _heading(sample: Sample) -> float:
-    """Mean direction of the soles about the vertical, rad."""
-    forward = sum(pin.XYZQUATToSE3(pose).rotation[:, 0] for pose in sample["sole_pose"])
-    return math.atan2(forward[1], forward[0])
 
 
 def _footing(sample: Sample, robot: RobotModel) -> Status:

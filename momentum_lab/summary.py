@@ -90,7 +90,7 @@ def summarize(session: Session | FinishedRun, timing: Timing) -> Summary:
     seconds = session.time
     return Summary(
         robot=session.robot.spec.name,
-        controller=session.controller,
+        controller=session.choices.controller,
         scenario=session.scenario.name,
         engine=session.scenario.engine,
         seconds=seconds,
@@ -109,8 +109,8 @@ def summarize(session: Session | FinishedRun, timing: Timing) -> Summary:
         real_time_factor=seconds / timing.wall_time,
         tick_us_p50=_percentile_us(timing.tick_time, 50.0),
         tick_us_p99=_percentile_us(timing.tick_time, 99.0),
-        priority=session.priority,
-        gains=msgspec.to_builtins(session.gains),
+        priority=session.choices.priority,
+        gains=msgspec.to_builtins(session.choices.gains),
         seed=session.scenario.seed,
         error=timing.error,
     )

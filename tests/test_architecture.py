@@ -22,7 +22,11 @@ FLOORS: tuple[frozenset[str], ...] = (
     frozenset({"control", "physics"}),
     frozenset(
         {
+            "active_bounds",
             "beside",
+            "choices",
+            "effects",
+            "fall",
             "scenario",
             "share_code",
             "run_file",

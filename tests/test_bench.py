@@ -9,7 +9,7 @@ import pytest
 
 from momentum_lab.bench.measure import ROBOTS, RobotBench, measure
 from momentum_lab.bench.peer import PeerLoop, PlacoPeer
-from momentum_lab.bench.profile import calls_per_tick, profile
+from momentum_lab.bench.profile import calls_per_tick, profile, stages_of
 from momentum_lab.bench.stages import STAGES, StagedTick
 from momentum_lab.cli import main
 from momentum_lab.physics.push import Push
@@ -156,6 +156,10 @@ def test_profile_is_a_tree_that_adds_up(g1: RobotModel) -> None:
     own = sum(row.own for row in rows)
     assert 0.8 * rows[0].total < own <= rows[0].total * (1.0 + 1e-9)
     assert any("RobotModel.at" in row.name or row.name == "robot.model.at" for row in rows)
+    stages = stages_of(rows)
+    assert list(stages) == ["state terms", "controller", "physics", "recording", "session"]
+    assert min(stages.values()) > 0.02 * rows[0].total
+    assert sum(stages.values()) == pytest.approx(rows[0].total)
 
 
 def test_command_prints_the_profile(capsys: pytest.CaptureFixture[str]) -> None:
@@ -164,6 +168,7 @@ def test_command_prints_the_profile(capsys: pytest.CaptureFixture[str]) -> None:
     assert list(document["profile"]) == list(ROBOTS)
     assert main(["bench", "--profile"]) == 0
     output = capsys.readouterr().out
+    assert "A tick of talos, stage by stage" in output
     assert "A tick of talos, call by call" in output
     assert "robot.model" in output
 

@@ -164,7 +164,7 @@ BAD_VALUES = [
     ("list gains --controller magic", f"--controller: got magic; allowed: one of {', '.join(CONTROLLERS)}"),
     (
         "fly",
-        "command: got fly; allowed: app, run, limit, report, replay, lesson, figure, list, equations, "
+        "command: got fly; allowed: app, run, limit, report, record, replay, lesson, figure, list, equations, "
         "robot-check, bench",
     ),
 ]
@@ -327,7 +327,7 @@ def test_without_json_the_result_is_for_people(capsys: Output, tmp_path: Path) -
 
 
 def test_a_fall_is_a_result_and_not_an_error(capsys: Output, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("momentum_lab.session._FALLEN_HEIGHT", 1.1)
+    monkeypatch.setattr("momentum_lab.fall._FALLEN_HEIGHT", 1.1)
     assert main(["run", "stand", *SHORT]) == 0
     assert "fell at 0.000 s" in capsys.readouterr().out
 

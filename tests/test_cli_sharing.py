@@ -11,6 +11,7 @@ import pytest
 
 from momentum_lab.cli import main
 from momentum_lab.control.presets import preset_named
+from momentum_lab.errors import InputError
 from momentum_lab.events import ApplyPush, LoggedEvent, SetGains
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import load_trace
@@ -93,9 +94,33 @@ def test_a_report_is_written_whole(tmp_path: Path, capsys: Output) -> None:
     assert path.read_text().rstrip().endswith("</html>")
 
 
+@pytest.mark.parametrize("ending", [".html", ".viser", ".HTML"])
+def test_a_recording_is_written_whole(ending: str, tmp_path: Path, capsys: Output) -> None:
+    path = tmp_path / f"r{ending}"
+    assert main(["record", "push-forward", "--robot", "g1", "--seconds", "0.1", "--out", str(path)]) == 0
+    assert capsys.readouterr().out == f"recording: {path}\n"
+    assert [entry.name for entry in tmp_path.iterdir()] == [path.name]
+    assert path.read_bytes().startswith(b"<!doctype html>") == (ending != ".viser")
+
+
+def test_a_recording_that_cannot_be_made_leaves_nothing(tmp_path: Path, monkeypatch, capsys: Output) -> None:
+    def full(*_: object) -> None:
+        raise InputError("recording", "no samples", "a run of at least one tick")
+
+    monkeypatch.setattr("momentum_lab.app.recorder.html_file", full)
+    words = f"record stand --robot g1 --seconds 0.05 --out {tmp_path / 'r.html'}"
+    assert refusal(capsys, *words.split()).startswith("recording: got no samples")
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
+        ("record stand", "--out: got nothing; allowed: the path of a file that ends in .html"),
+        ("record stand --out nowhere/r.html", "--out: got nowhere/r.html; allowed: a file in a folder"),
+        ("record stand --out r.avi", "--out: got r.avi; allowed: a file that ends in .html"),
+        ("record stand --out r.mp4", "--out: got r.mp4; allowed: a file that ends in .html (plays in any"),
+        ("record --out r.viser", "scenario: got nothing"),
         ("report stand", "--out: got nothing; allowed: the path of an .html file"),
         ("report stand --out nowhere/r.html", "--out: got nowhere/r.html; allowed: a file in a folder"),
         ("replay", "file: got nothing; allowed: a file that ends in .json, .toml, .npz"),

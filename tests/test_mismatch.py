@@ -110,12 +110,12 @@ def test_an_error_can_come_and_go_in_mid_run(talos):
     session, _ = spied(talos, EXACT, 20)
     session.post(SetMismatch("mass_error", 0.2))
     momentum = session.tick()["momentum"]
-    assert session.mismatch == Mismatch(mass_error=0.2)
+    assert session.choices.mismatch == Mismatch(mass_error=0.2)
     assert session.dynamics.mass_matrix[0, 0] == pytest.approx(1.2 * talos.mass)
     assert np.isfinite(momentum).all()
     session.post(SetMismatch("mass_error", 0.0))
     session.tick()
-    assert session.mismatch == EXACT
+    assert session.choices.mismatch == EXACT
     assert session.dynamics.mass_matrix[0, 0] == pytest.approx(talos.mass)
 
 
@@ -124,7 +124,7 @@ def test_an_error_out_of_range_is_refused_before_it_acts(talos):
     with pytest.raises(InputError, match=r"^mismatch mass_error: got 2\.0; allowed: a number from -0\.3 to"):
         session.post(SetMismatch("mass_error", 2.0))
     session.tick()
-    assert session.mismatch == EXACT
+    assert session.choices.mismatch == EXACT
 
 
 def test_standing_up_again_keeps_the_errors_and_repeats_the_noise(g1):

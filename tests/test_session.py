@@ -43,11 +43,11 @@ def test_an_event_acts_at_the_next_tick_and_not_before(talos):
     session = run(session_of(talos), 3)
     session.post(SetPriority(0.7))
     session.post(SetGain("linear_damping", 5.0))
-    assert session.priority == 0.0
-    assert session.gains.linear_damping != 5.0
+    assert session.choices.priority == 0.0
+    assert session.choices.gains.linear_damping != 5.0
     assert session.log == []
     assert session.tick().number("priority") == 0.7
-    assert session.gains.linear_damping == 5.0
+    assert session.choices.gains.linear_damping == 5.0
     assert session.log == [
         LoggedEvent(3, SetPriority(0.7)),
         LoggedEvent(3, SetGain("linear_damping", 5.0)),
@@ -59,7 +59,7 @@ def test_events_act_in_the_order_in_which_they_came(talos):
     for value in (0.1, 0.9, 0.4):
         session.post(SetPriority(value))
     session.tick()
-    assert session.priority == 0.4
+    assert session.choices.priority == 0.4
     assert [entry.event.value for entry in session.log] == [0.1, 0.9, 0.4]
 
 
@@ -154,7 +154,7 @@ def test_reset_stands_the_robot_up_with_its_gains(g1):
     assert session.last_failure is None
     assert (sample.number("time"), session.time, len(session.recording)) == (0.0, 1e-3, 1)
     assert_close(sample["q"], first, 0.0)
-    assert (session.gains.linear_damping, session.priority) == (9.0, 0.3)
+    assert (session.choices.gains.linear_damping, session.choices.priority) == (9.0, 0.3)
     run(session, 200)
     assert session.fall is None
     assert session.log[-1].event == Reset()
@@ -162,11 +162,11 @@ def test_reset_stands_the_robot_up_with_its_gains(g1):
 
 def test_another_controller_starts_with_its_own_gains(talos):
     session = session_of(talos, gains={"linear_damping": 5.0})
-    assert session.gains.linear_damping == 5.0
+    assert session.choices.gains.linear_damping == 5.0
     session.post(SelectController("computed-torque"))
     run(session, 5)
-    assert session.gains == type(session.gains)()
-    assert session.controller == "computed-torque"
+    assert session.choices.gains == type(session.choices.gains)()
+    assert session.choices.controller == "computed-torque"
 
 
 # Runs
@@ -174,7 +174,7 @@ def test_another_controller_starts_with_its_own_gains(talos):
 
 def test_a_run_begins_with_the_priority_of_its_scenario(talos):
     session = session_of(talos, priority=0.6)
-    assert session.priority == 0.6
+    assert session.choices.priority == 0.6
     assert session.tick().number("priority") == 0.6
 
 

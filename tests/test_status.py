@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from momentum_lab.session import Fall
+from momentum_lab.active_bounds import Active
+from momentum_lab.fall import Fall
 from momentum_lab.status import Status, status_of
 from tests.app.conftest import changed_sample, sample_at
 from tests.conftest import yaw_rotation
@@ -87,6 +88,33 @@ def test_the_border_is_seen_from_the_robot(standing, session, talos):
 def test_a_goal_lost_inside_the_support_is_blamed_on_the_forces(standing, session, talos):
     sample = desired_beyond(standing, session.recording.layout, (0.0, 0.0))
     assert status_of(sample, talos).words == "foot forces at their limit: angular goal gives way by 88 N m"
+
+
+def test_the_bound_that_stops_the_forces_is_named_where_it_is_known(standing, session, talos):
+    sample = desired_beyond(standing, session.recording.layout, (0.0, 0.0))
+    held = (Active("right foot", "no load"), Active("left foot", "friction limit"))
+    words = status_of(sample, talos, held=held).words
+    assert words == "friction limit (left foot): angular goal gives way by 88 N m"
+
+
+SLIPPERY = Active("right foot", "friction limit")
+
+
+@pytest.mark.parametrize(
+    ("held", "where"),
+    [
+        ((Active("left foot", "CoP on the toes"), Active("left foot", "friction limit")), "CoP on the toes"),
+        (
+            (Active("left foot", "CoP on the heel"), Active("right foot", "friction limit")),
+            "friction limit (right foot)",
+        ),
+        ((Active("leg_left_4_joint", "torque limit"),), "torque limit (leg_left_4_joint)"),
+        ((), "CoP on the toes"),
+    ],
+)
+def test_a_border_is_blamed_only_if_the_cop_is_there(standing, session, talos, held, where):
+    sample = desired_beyond(standing, session.recording.layout, (1.0, 0.0))
+    assert status_of(sample, talos, held=held).words.startswith(f"{where}: ")
 
 
 def test_small_losses_are_not_worth_a_word(standing, session, talos):

@@ -76,9 +76,9 @@ def test_a_takeover_that_lasts_is_taken_up_again(g1):
     run(session, timeline, 90, events)
     before = bits(session)
     timeline.go_back(55)
-    assert session.controller == "slack-qp"
+    assert session.choices.controller == "slack-qp"
     timeline.go_back(20)
-    assert session.controller == "computed-torque"
+    assert session.choices.controller == "computed-torque"
     run(session, timeline, 90, events)
     assert bits(session) == before
 
@@ -119,4 +119,4 @@ def test_a_fork_goes_on_as_the_session_does_bit_for_bit(robot, controller):
         assert one.row.tobytes() == two.row.tobytes()
     other.post(SetPriority(1.0))
     other.tick()
-    assert (session.priority, other.priority) == (0.0, 1.0)
+    assert (session.choices.priority, other.choices.priority) == (0.0, 1.0)

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import viser
 
-_FIELD_OF_VIEW = math.radians(32.0)
+FIELD_OF_VIEW = math.radians(32.0)
 # Below this width over height the controls cover the lower part of the picture.
 _NARROW = 0.62
 _COVERED = 0.62
-_USUAL_ASPECT = 1.5
+USUAL_ASPECT = 1.5
 # From here two robots that stand side by side are seen beside each other, degrees.
 _AZIMUTH_OF_TWO = -42.0
 # Beside two robots there is room for one that lies on the ground, in CoM heights.
@@ -79,7 +79,7 @@ class Camera:
             view = of_two(view, spread / self._size)
         target, position = camera_pose(view, self._size, center, aspect)
         self._center = center
-        self._client.camera.fov = _FIELD_OF_VIEW
+        self._client.camera.fov = FIELD_OF_VIEW
         self._client.camera.position = position
         self._client.camera.look_at = target
 
@@ -108,7 +108,7 @@ class Camera:
 def _aspect(client: viser.ClientHandle) -> float:
     """Width over height of the picture, as the browser tells it."""
     width, height = client.camera.image_width, client.camera.image_height
-    return width / height if width > 0 and height > 0 else _USUAL_ASPECT
+    return width / height if width > 0 and height > 0 else USUAL_ASPECT
 
 
 def of_two(view: View, spread: np.ndarray) -> View:
@@ -121,6 +121,16 @@ def of_two(view: View, spread: np.ndarray) -> View:
     azimuth = view.azimuth if view.azimuth in (0.0, -90.0) else _AZIMUTH_OF_TWO
     across = np.array([-math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))])
     return replace(view, azimuth=azimuth, width=view.width + _ROOM_TO_FALL + abs(float(across @ spread)))
+
+
+def wide_enough(view: View, way: np.ndarray) -> View:
+    """The view for a robot that goes some way.
+
+    Args:
+        view: of a robot that stands.
+        way: from one end to the other (2,), in CoM heights.
+    """
+    return replace(view, width=view.width + float(np.linalg.norm(way)))
 
 
 def camera_pose(view: View, size: float, center: np.ndarray, aspect: float) -> tuple[np.ndarray, np.ndarray]:
@@ -137,7 +147,7 @@ def camera_pose(view: View, size: float, center: np.ndarray, aspect: float) -> t
     middle = 0.5 * (view.high + view.low) * size
     target = np.array([center[0], center[1], middle - 0.5 * (1.0 - free) * height])
     azimuth, elevation = math.radians(view.azimuth), math.radians(view.elevation)
-    distance = 0.5 * height / math.tan(0.5 * _FIELD_OF_VIEW)
+    distance = 0.5 * height / math.tan(0.5 * FIELD_OF_VIEW)
     back = np.array(
         [
             math.cos(azimuth) * math.cos(elevation),

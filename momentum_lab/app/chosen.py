@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
+from momentum_lab.app.wire import Truth
 from momentum_lab.beside import Beside
 from momentum_lab.control.gains import declared_gains, with_gains
 from momentum_lab.control.ground_sense import GroundSense
@@ -25,8 +26,8 @@ from momentum_lab.events import (
     SetMotion,
     SetPriority,
 )
-from momentum_lab.momentum.directions import directions, text_of
-from momentum_lab.physics.mismatch import EXACT, Mismatch, changes, with_error
+from momentum_lab.momentum.directions import text_of
+from momentum_lab.physics.mismatch import EXACT, Mismatch, changes
 from momentum_lab.session import Session
 
 
@@ -64,7 +65,19 @@ class Chosen:
         events += [SetMismatch(*change) for change in changes(self.mismatch, other.mismatch)]
         if other.angular_goal != self.angular_goal:
             events.append(SetAngularGoal(other.angular_goal))
-        return events + [SetGain(name, value) for name, value in other.gains.items() if value != gains[name]]
+        changed = {name: value for name, value in other.gains.items() if value != gains[name]}
+        if len(changed) > 1:
+            return [*events, SetGains(changed)]
+        return events + [SetGain(name, value) for name, value in changed.items()]
+
+    def differing(self, other: Chosen) -> frozenset[str]:
+        """Names of the choices, gains and model errors in which these choices are others."""
+        names = {name for name in CHOICES if getattr(self, name) != getattr(other, name)} - {
+            "gains",
+            "mismatch",
+        }
+        gains = {name for name in self.gains if self.gains[name] != other.gains.get(name)}
+        return frozenset(names | gains | {name for name, _ in changes(other.mismatch, self.mismatch)})
 
     def beside(self, beside: Beside) -> Chosen:
         """The choices for a robot beside the one with these choices.
@@ -87,36 +100,29 @@ class Chosen:
         )
 
 
+CHOICES = tuple(field.name for field in fields(Chosen))
+"""The names of all choices; `Truth` has them under the same names."""
+
+
+def chosen_in(truth: Truth) -> Chosen:
+    """The choices in what is the case."""
+    return Chosen(**{name: getattr(truth, name) for name in CHOICES})
+
+
 def chosen_of(session: Session, waiting: Iterable[SessionEvent]) -> Chosen:
     """The choices of this moment; those that wait for the session's next tick count as made."""
-    priority, controlled = session.priority, text_of(session.controlled)
-    motion, angular_goal = session.motion, session.angular_goal
-    controller, planner, gains = session.controller, session.planner, values_of(session.gains)
-    sense, mismatch = session.ground_sense, session.mismatch
-    for event in waiting:
-        match event:
-            case SetPriority(value):
-                priority = value
-            case SetDirections(text):
-                controlled = text_of(directions(text))
-            case SelectPlanner(name):
-                planner = name
-            case SetMotion(name):
-                motion = name
-            case SetAngularGoal(goal):
-                angular_goal = goal
-            case SetGroundSense(told_or_felt):
-                sense = told_or_felt
-            case SetMismatch(name, value):
-                mismatch = with_error(mismatch, name, value)
-            case SetGain(name, value):
-                gains[name] = value
-            case SetGains(values):
-                gains.update(values)
-            case SelectController(name):
-                controller, gains = name, values_of(controller_entry(name).gains)
-                planner = planner if planner in controller_entry(name).planners else OWN
-    return Chosen(controller, priority, controlled, planner, motion, angular_goal, gains, sense, mismatch)
+    choices = session.choices_after(waiting)
+    return Chosen(
+        controller=choices.controller,
+        priority=choices.priority,
+        controlled=text_of(choices.controlled),
+        planner=choices.planner,
+        motion=choices.motion,
+        angular_goal=choices.angular_goal,
+        gains=values_of(choices.gains),
+        ground_sense=choices.ground_sense,
+        mismatch=choices.mismatch,
+    )
 
 
 def values_of(gains: object) -> dict[str, float]:

@@ -99,8 +99,11 @@ class Comparison:
         self._stories[0].add(rows_of(frame.history, width))
         if frame.other is None:
             self._stories[1] = Story(self._loaded.model, self._loaded.layout)
+            plots.alone()
         else:
-            self._stories[1].add(rows_of(frame.other.history, width))
+            others = rows_of(frame.other.history, width)
+            self._stories[1].add(others)
+            plots.add_beside(others)
         if frame.foreseen:
             self._foresee(frame)
         elif self._has_come_true(frame.truth, sample.number("time")):

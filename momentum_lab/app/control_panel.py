@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import viser
 
 from momentum_lab.app import html
+from momentum_lab.app.bounds_panel import BoundsPanel
+from momentum_lab.app.changes_panel import ChangesPanel
 from momentum_lab.app.tuning_panel import TuningPanel
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
@@ -119,10 +121,12 @@ class ControlPanel:
             post,
         )
         gui.add_html(html.slider_ends("hold the CoM", "hold the posture"))
+        self.bounds = BoundsPanel(gui)
         self._slacks = gui.add_html("", visible=False)
         self._slacks_text = ""
         self._next = -math.inf
         self._directions = _Directions(gui, post, truth)
+        self._changes = ChangesPanel(gui, post, tell, truth)
         self._gains = TuningPanel(gui, post, tell, truth)
 
     def follow(self, truth: Truth) -> None:
@@ -142,6 +146,7 @@ class ControlPanel:
             self._gains.remove()
             self._gains = TuningPanel(self._gui, self._post, self._tell, truth)
         self._gains.follow(truth)
+        self._changes.follow(truth)
 
     def see(self, sample: Sample) -> None:
         """Show the slacks of a sample, ten times a second at most, if its controller has any."""

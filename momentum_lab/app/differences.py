@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import msgspec
 
+from momentum_lab.app.chosen import CHOICES, Chosen, chosen_in
 from momentum_lab.app.wire import Truth
 from momentum_lab.physics.push import Push
 
@@ -14,26 +15,32 @@ NOTHING = "–"
 
 def choices(truth: Truth) -> dict[str, str]:
     """Everything that was chosen for a run, by its name on the screen."""
+    chosen = chosen_in(truth)
+    errors = choices_in_words(chosen)
+    first = {name: errors.pop(name) for name in list(errors) if not name.startswith("model: ")}
     return {
         "robot": truth.robot,
-        "controller": truth.controller,
-        "priority": f"{truth.priority:g}",
-        "planner": truth.planner,
-        "directions": truth.controlled,
-        "motion": truth.motion or "stand still",
-        "angular goal": truth.angular_goal,
-        "how the ground moves": truth.ground_sense,
+        **first,
         "friction of the ground": ", ".join(f"{value:g}" for value in dict.fromkeys(truth.friction)),
         "push": NOTHING if truth.first_push is None else push_in_words(truth.first_push),
         **{name.replace("_", " "): f"{value:g}" for name, value in truth.gains.items()},
-        **{f"model: {name.replace('_', ' ')}": f"{value:g}" for name, value in _errors(truth).items()},
+        **errors,
     }
 
 
-def _errors(truth: Truth) -> dict[str, float]:
-    """Each model error by its name."""
-    errors: dict[str, float] = msgspec.structs.asdict(truth.mismatch)
-    return errors
+def choices_in_words(chosen: Chosen) -> dict[str, str]:
+    """All choices but the gains, by their names on the screen."""
+    errors: dict[str, float] = msgspec.structs.asdict(chosen.mismatch)
+    return {
+        "controller": chosen.controller,
+        "priority": f"{chosen.priority:g}",
+        "planner": chosen.planner,
+        "directions": chosen.controlled,
+        "motion": chosen.motion or "stand still",
+        "angular goal": chosen.angular_goal,
+        "how the ground moves": chosen.ground_sense,
+        **{f"model: {name.replace('_', ' ')}": f"{value:g}" for name, value in errors.items()},
+    }
 
 
 def differences(truths: Sequence[Truth]) -> dict[str, tuple[str, ...]]:
@@ -46,18 +53,7 @@ def differences(truths: Sequence[Truth]) -> dict[str, tuple[str, ...]]:
 
 def with_choices(truth: Truth, chosen: Truth) -> Truth:
     """What is the case in a run, with the choices of another moment of it."""
-    return msgspec.structs.replace(
-        truth,
-        controller=chosen.controller,
-        priority=chosen.priority,
-        planner=chosen.planner,
-        controlled=chosen.controlled,
-        motion=chosen.motion,
-        angular_goal=chosen.angular_goal,
-        ground_sense=chosen.ground_sense,
-        mismatch=chosen.mismatch,
-        gains=chosen.gains,
-    )
+    return msgspec.structs.replace(truth, **{name: getattr(chosen, name) for name in CHOICES})
 
 
 def names_of(first: Truth, second: Truth) -> tuple[str, str]:

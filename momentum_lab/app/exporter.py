@@ -11,15 +11,14 @@ from pathlib import Path
 import msgspec
 
 from momentum_lab.app.wire import RunTaken, rows_of
-from momentum_lab.control.gains import with_gains
-from momentum_lab.control.registry import controller_entry
+from momentum_lab.choices import Choices
 from momentum_lab.errors import InputError, LabError
+from momentum_lab.fall import Fall
 from momentum_lab.finished import FinishedRun
 from momentum_lab.provenance import provenance
 from momentum_lab.recording import Layout, Recording, save_trace
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.run_file import encoded
-from momentum_lab.session import Fall
 
 # A minute's table on a busy machine takes less, s.
 _PATIENCE = 180.0
@@ -96,14 +95,10 @@ def finished(taken: RunTaken) -> FinishedRun:
         robot,
         recording,
         taken.time,
-        taken.controller,
-        taken.planner,
-        with_gains(controller_entry(taken.controller).gains, taken.gains),
-        taken.priority,
+        Choices.of(taken.run.scenario).after_all((entry.event for entry in taken.run.events), robot),
         taken.pushes,
         None if taken.fall is None else Fall(taken.fall.time, taken.fall.reason),
         taken.failures,
-        taken.mismatch,
         taken.com_speed,
     )
 
@@ -133,11 +128,25 @@ def _report(run: FinishedRun) -> bytes:
     return report(run)
 
 
+def _recording(run: FinishedRun) -> bytes:
+    from momentum_lab.app.recorder import html_file
+
+    return html_file(run)
+
+
+def _viser(run: FinishedRun) -> bytes:
+    from momentum_lab.app.recorder import viser_file
+
+    return viser_file(run)
+
+
 MAKERS: dict[str, Callable[[FinishedRun], bytes]] = {
     "run": lambda run: encoded(run.run),
     "trace": _trace,
     "table": _table,
     "plots": _plots,
     "report": _report,
+    "recording": _recording,
+    "viser": _viser,
 }
-"""Kind -> what makes it; matplotlib is loaded by those that draw."""
+"""Kind -> what makes it; matplotlib and viser are loaded by those that need them."""

@@ -72,11 +72,14 @@ def sentence(words: str) -> str:
 
 
 def changes(lines: Iterable[str]) -> str:
-    """What differs from the defaults, one line each."""
+    """What differs from the scenario, one line each."""
     found = "".join(f"<li>{escape(line)}</li>" for line in lines)
     if not found:
-        return '<div class="lab dim">All gains are at their defaults.</div>'
-    return f'<div class="lab">Changed:<ul class="n" style="margin:0;padding-left:1.2em">{found}</ul></div>'
+        return '<div class="lab dim">Everything is as the scenario has it.</div>'
+    return (
+        '<div class="lab">Changed against the scenario:'
+        f'<ul class="n" style="margin:0;padding-left:1.2em">{found}</ul></div>'
+    )
 
 
 def slacks(values: Iterable[tuple[str, float, str]]) -> str:

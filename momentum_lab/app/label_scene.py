@@ -9,6 +9,7 @@ import viser
 
 from momentum_lab.app.marks import STYLES, Anchor
 from momentum_lab.app.overlays import Mark, Point
+from momentum_lab.app.viewer import Viewer
 
 # Points nearer to each other than this, in CoM heights, are at the same place for a reader.
 _TOGETHER = 0.03
@@ -82,7 +83,7 @@ class LabelScene:
         root: name of the node that everything hangs below; empty: the world.
     """
 
-    def __init__(self, client: viser.ClientHandle, root: str = "") -> None:
+    def __init__(self, client: Viewer, root: str = "") -> None:
         self._client, self._root = client, root
         self._handles: dict[str, viser.LabelHandle] = {}
         self._at: dict[str, np.ndarray] = {}

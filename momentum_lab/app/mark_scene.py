@@ -6,12 +6,12 @@ from collections.abc import Collection
 from typing import Protocol
 
 import numpy as np
-import viser
 
 from momentum_lab.app.label_scene import LabelScene, arrange
 from momentum_lab.app.marks import STYLES, MarkStyle
 from momentum_lab.app.overlays import Mark
 from momentum_lab.app.shapes import is_solid, solid
+from momentum_lab.app.viewer import Viewer
 
 # Less than this does not show, m.
 _SAME_PLACE = 3e-4
@@ -41,7 +41,7 @@ class MarkScene:
         root: name of the node that everything hangs below; empty: the world.
     """
 
-    def __init__(self, client: viser.ClientHandle, size: float, root: str = "") -> None:
+    def __init__(self, client: Viewer, size: float, root: str = "") -> None:
         self._client, self._root = client, root
         self._size = size
         self._drawings: dict[str, _Drawing] = {}
@@ -83,9 +83,7 @@ class MarkScene:
             self._drawings[mark.key].move(points)
 
 
-def _drawing(
-    client: viser.ClientHandle, root: str, style: MarkStyle, points: np.ndarray, size: float
-) -> _Drawing:
+def _drawing(client: Viewer, root: str, style: MarkStyle, points: np.ndarray, size: float) -> _Drawing:
     name = f"{root}/marks/{style.key}"
     if is_solid(style.shape):
         return _Solids(client, name, style, points, size)
@@ -99,9 +97,7 @@ def _drawing(
 class _Solids:
     """One small solid per point."""
 
-    def __init__(
-        self, client: viser.ClientHandle, name: str, style: MarkStyle, points: np.ndarray, size: float
-    ) -> None:
+    def __init__(self, client: Viewer, name: str, style: MarkStyle, points: np.ndarray, size: float) -> None:
         vertices, faces = solid(style.shape)
         radius = size * _RADIUS.get(style.shape, _POINT_RADIUS)
         self._handle = client.scene.add_batched_meshes_simple(
@@ -128,9 +124,7 @@ class _Solids:
 class _Arrows:
     """One arrow per pair of points."""
 
-    def __init__(
-        self, client: viser.ClientHandle, name: str, style: MarkStyle, points: np.ndarray, size: float
-    ) -> None:
+    def __init__(self, client: Viewer, name: str, style: MarkStyle, points: np.ndarray, size: float) -> None:
         radius = size * _SHAFT[style.shape]
         self._handle = client.scene.add_arrows(
             name,
@@ -151,9 +145,7 @@ class _Arrows:
 class _Lines:
     """One straight line per pair of points."""
 
-    def __init__(
-        self, client: viser.ClientHandle, name: str, style: MarkStyle, points: np.ndarray, size: float
-    ) -> None:
+    def __init__(self, client: Viewer, name: str, style: MarkStyle, points: np.ndarray, size: float) -> None:
         self._handle = client.scene.add_line_segments(
             name, _pairs(points), style.color, thickness=size * _THICKNESS[style.shape]
         )
@@ -168,7 +160,7 @@ class _Lines:
 class _Area:
     """A filled convex polygon."""
 
-    def __init__(self, client: viser.ClientHandle, name: str, style: MarkStyle, points: np.ndarray) -> None:
+    def __init__(self, client: Viewer, name: str, style: MarkStyle, points: np.ndarray) -> None:
         self._handle = client.scene.add_mesh_simple(
             name,
             points,

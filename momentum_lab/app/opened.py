@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from momentum_lab.app.wire import Opened
-from momentum_lab.events import SessionEvent
+from momentum_lab.events import LoggedEvent, SessionEvent
 from momentum_lab.replay import Script, end_agreement
 from momentum_lab.run_file import Run
 from momentum_lab.scenario import Scenario
@@ -25,6 +25,10 @@ class OpenedRun:
     def due(self, session: Session) -> list[SessionEvent]:
         """What was done at the tick that is about to begin."""
         return self._script.at(session.ticks)
+
+    def coming(self, session: Session) -> list[LoggedEvent]:
+        """What is done at the ticks that have not begun."""
+        return [entry for entry in self._run.events if entry.tick >= session.ticks]
 
     def ends(self, session: Session) -> bool:
         """Whether a session has come to the end of the run, for the first time."""

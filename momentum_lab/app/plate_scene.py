@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
-import viser
 
+from momentum_lab.app.viewer import Viewer
 from momentum_lab.robot.model import RobotModel
 
 _THICKNESS = 0.02
@@ -30,7 +30,7 @@ class PlateScene:
         root: name of the node that everything hangs below; empty: the world.
     """
 
-    def __init__(self, client: viser.ClientHandle, robot: RobotModel, root: str = "") -> None:
+    def __init__(self, client: Viewer, robot: RobotModel, root: str = "") -> None:
         self._client, self._root = client, root
         self._sizes = [(sole.upper - sole.lower + 2.0 * _RIM).tolist() for sole in robot.soles]
         self._middles = [np.append((sole.lower + sole.upper) / 2.0, 0.0) for sole in robot.soles]

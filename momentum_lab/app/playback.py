@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import msgspec
-import numpy as np
-
-from momentum_lab.app.chosen import chosen_of, values_of
+from momentum_lab.app.chosen import chosen_of
 from momentum_lab.app.companion import Companion
 from momentum_lab.app.foresight import Foresight
 from momentum_lab.app.opened import NOTHING_OPENED, OpenedRun
-from momentum_lab.app.wire import Fallen, Foreseen, OpenRun, RunTaken, Truth
+from momentum_lab.app.restart import named_run, once_more, with_robot
+from momentum_lab.app.truth import Clock, taken_of, truth_of
+from momentum_lab.app.wire import Foreseen, OpenRun, RunTaken, Truth
 from momentum_lab.beside import Beside
-from momentum_lab.control.motion import motions_of
-from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.events import (
     ApplyPush,
@@ -35,13 +32,11 @@ from momentum_lab.events import (
     StepOnce,
     StopGround,
 )
-from momentum_lab.finished import com_speed
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
-from momentum_lab.robot.catalog import load_spec
 from momentum_lab.robot.model import RobotModel
-from momentum_lab.run_file import Run, as_run, run_of
-from momentum_lab.scenario import Scenario, changed, load_scenario, sides
+from momentum_lab.run_file import Run, as_run
+from momentum_lab.scenario import Scenario, sides
 from momentum_lab.session import Session
 from momentum_lab.timeline import Timeline
 
@@ -50,8 +45,6 @@ MEMORY = 60.0
 
 # Samples whose memory is made ready before the first tick, and in each idle moment afterwards.
 _AT_ONCE, _IN_PASSING = 2000, 256
-# When the first push of a run that is done again comes, if it did not come sooner, s.
-_BEFORE_PUSH = 0.5
 
 
 class Playback:
@@ -117,11 +110,12 @@ class Playback:
             case Foresee(push):
                 self._foresee(push)
             case RunAgain():
-                self._begin(Run(self._again()))
+                coming = self._opened.coming(self.session)
+                self._begin(once_more(self.session, self._waiting, coming, self._difference))
             case SelectRobot(name):
-                self._begin(Run(self._with_robot(name)))
+                self._begin(Run(with_robot(name, self.session, self._waiting, self._difference)))
             case LoadScenario(name):
-                self._begin(self._scenario(name))
+                self._begin(named_run(name, self._first, self.session.scenario.robot))
             case OpenRun(run):
                 self._begin(run)
                 self._first = run
@@ -146,56 +140,20 @@ class Playback:
 
     def truth(self, real_time_factor: float) -> Truth:
         """What is the case now; what waits for the next tick counts as done."""
-        session, chosen = self.session, chosen_of(self.session, self._waiting)
-        return Truth(
+        clock = Clock(
             run=self.run,
-            scenario=session.scenario.name,
-            robot=session.scenario.robot,
-            controller=chosen.controller,
-            priority=chosen.priority,
-            controlled=chosen.controlled,
-            planner=chosen.planner,
-            motion=chosen.motion,
-            angular_goal=chosen.angular_goal,
-            gains=chosen.gains,
             playing=self.playing,
             speed=self.speed,
             real_time_factor=real_time_factor,
-            fall=self._fall(),
-            failure=session.last_failure,
-            failures=session.solver_failures,
             stopped=self.stopped,
-            push=_latest(session.pushes, self.shown.number("time")),
-            friction=self._friction(),
-            uneven=not session.ground.is_floor,
-            floor=float(session.ground.floor.origin[2]),
-            ground_sense=chosen.ground_sense,
-            mismatch=chosen.mismatch,
-            behind=self._behind * session.scenario.timestep,
-            first_push=_first(session.pushes, self.shown.number("time")),
-            beside=self._difference,
-            opened=self._opened.told(session),
+            behind=self._behind * self.session.scenario.timestep,
         )
+        opened = self._opened.told(self.session)
+        return truth_of(self.session, self._waiting, self.shown, clock, self._difference, opened)
 
     def taken(self, recording: bool) -> RunTaken:
         """The run as it is now, with its samples or without; a robot beside the first is in its scenario."""
-        session, fall = self.session, self.session.fall
-        run = run_of(session, self._waiting)
-        scenario = msgspec.structs.replace(run.scenario, beside=self._difference)
-        return RunTaken(
-            run=msgspec.structs.replace(run, scenario=scenario),
-            rows=session.recording.rows().tobytes() if recording else b"",
-            time=session.time,
-            controller=session.controller,
-            planner=session.planner,
-            priority=session.priority,
-            gains=values_of(session.gains),
-            pushes=session.pushes,
-            fall=None if fall is None else Fallen(fall.time, fall.reason),
-            failures=session.solver_failures,
-            mismatch=session.mismatch,
-            com_speed=com_speed(session),
-        )
+        return taken_of(self.session, self._waiting, self._difference, recording)
 
     @property
     def _difference(self) -> Beside | None:
@@ -219,23 +177,6 @@ class Playback:
         answers = tuple(foresight.answer() for foresight in self.foresights)
         self.foresights = ()
         return answers
-
-    def _friction(self) -> tuple[float, ...]:
-        """Friction under each foot at what is looked at; what waits for the next tick counts as done."""
-        friction = self.session.ground.friction(self.shown.number("time"))
-        names = self.session.robot.foot_names
-        for event in self._waiting:
-            if isinstance(event, SetFriction):
-                changed_feet = [name == event.foot or not event.foot for name in names]
-                friction = np.where(changed_feet, event.value, friction)
-        return tuple(friction.tolist())
-
-    def _fall(self) -> Fallen | None:
-        """The fall, unless it is still to come at the instant that is looked at."""
-        fall = self.session.fall
-        if fall is None or fall.time > self.shown.number("time"):
-            return None
-        return Fallen(fall.time, fall.reason)
 
     def _look_back(self, ticks: int) -> None:
         """Look at an earlier sample, the oldest that there is if that is too far."""
@@ -333,48 +274,3 @@ class Playback:
         if self.beside is not None:
             found.append(Foresight(self.beside.session, self.beside.waiting, push))
         self.foresights = tuple(found)
-
-    def _again(self) -> Scenario:
-        """The present choices and pushes from the start, the first push soon after it."""
-        pushes = self.session.pushes
-        early = max(0.0, min((push.start for push in pushes), default=0.0) - _BEFORE_PUSH)
-        again = tuple(msgspec.structs.replace(push, start=push.start - early) for push in pushes)
-        return changed(self._with_robot(self.session.scenario.robot), pushes=again)
-
-    def _with_robot(self, name: str) -> Scenario:
-        """The same scenario and choices with a robot."""
-        truth = self.truth(0.0)
-        defaults = values_of(controller_entry(truth.controller).gains)
-        gains = {gain: value for gain, value in truth.gains.items() if value != defaults[gain]}
-        return changed(
-            self.session.scenario,
-            robot=name,
-            controller=truth.controller,
-            priority=truth.priority,
-            controlled=truth.controlled,
-            planner=truth.planner,
-            motion=truth.motion if truth.motion in motions_of(load_spec(name)) else "",
-            angular_goal=truth.angular_goal,
-            ground_sense=truth.ground_sense,
-            gains=gains,
-            mismatch=truth.mismatch,
-            beside=truth.beside,
-        )
-
-    def _scenario(self, name: str) -> Run:
-        """The scenario of that name with the robot that is there; what was opened under it is played again."""
-        robot = self.session.scenario.robot
-        if name != self._first.scenario.name:
-            return Run(changed(load_scenario(name), robot=robot))
-        if robot == self._first.scenario.robot:
-            return self._first
-        return Run(changed(self._first.scenario, robot=robot))
-
-
-def _first(pushes: tuple[Push, ...], time: float) -> Push | None:
-    return min((push for push in pushes if push.start <= time), key=lambda push: push.start, default=None)
-
-
-def _latest(pushes: tuple[Push, ...], time: float) -> Push | None:
-    begun = [push for push in pushes if push.start <= time]
-    return max(begun, key=lambda push: push.start, default=None)

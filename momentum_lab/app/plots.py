@@ -12,6 +12,7 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.marks import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLES, Color
+from momentum_lab.app.second_curves import POINTS, curves_at
 from momentum_lab.app.series import WINDOW, Curves, History
 from momentum_lab.recording import Layout
 from momentum_lab.robot.model import RobotModel
@@ -24,8 +25,6 @@ _HEIGHT = 100
 _UNSEEN = 1e-5
 _AXIS = {"font": "10px sans-serif", "gap": 2, "ticks": {"size": 3}}
 _POINTS = ("com", "cop", "cmp", "capture")
-# Of a run that has been kept, the points that say most: where its CoM went, and what pushed it there.
-_KEPT_POINTS = ("com", "cop")
 # What is asked for is grey and dashed, what the ground may give blue, what it gave green like the GRF.
 _KINDS: dict[str, tuple[Color, list[int]]] = {
     "desired": (GREY, [6, 4]),
@@ -53,13 +52,14 @@ class Plots:
         self._direction = np.array([1.0, 0.0])
         self._until = math.inf
         self._kept: History | None = None
+        self._beside: History | None = None
         self.ahead = 0.0
         self._places = _plot(
             gui,
             "Points along the push (cm)",
             [_line(STYLES[name].label, STYLES[name].color) for name in _POINTS]
             + [_line("support", GREY, [3, 3]), _line("", GREY, [3, 3])]
-            + [_kept_line(STYLES[name].color) for name in _KEPT_POINTS],
+            + [_kept_line(STYLES[name].color) for name in POINTS],
             soft=_SOFT["places"],
             bands=({"series": (6, 5), "fill": "rgba(110,110,110,0.10)"},),
         )
@@ -87,19 +87,52 @@ class Plots:
             soft=_SOFT["momenta"],
         )
 
+        # Plots, and what a robot beside the first adds to them: behind all others, so that those stay as they are.
+        self._plots = (self._places, self._linear, self._angular, self._momenta)
+        thin = ([_thin_line(STYLES[name].color) for name in POINTS], [_thin_line(GREEN)], [_thin_line(GREEN)])
+        self._thin = (*thin, [_thin_line(ORANGE), _thin_line(PURPLE)])
+
     def begin(self, robot: RobotModel, layout: Layout) -> None:
         """Start with empty plots for a robot."""
         self._history = History(robot, layout)
+        self.alone()
 
     def clear(self) -> None:
         """Empty the plots."""
-        if self._history is not None:
-            self._history.clear()
+        for history in (self._history, self._beside):
+            if history is not None:
+                history.clear()
         self._next = self._next_rest = -math.inf
 
     def keep(self) -> None:
         """Draw what is here now as dashed curves from now on, below those of later runs."""
         self._kept = None if self._history is None else self._history.copy()
+
+    def add_beside(self, rows: np.ndarray) -> None:
+        """Take new samples (n, width) of a robot beside the first; its curves are thin."""
+        if self._history is None:
+            return
+        if self._beside is None:
+            self._beside = self._history.another()
+            self._series_of_two()
+        self._beside.add(rows)
+
+    def alone(self) -> None:
+        """There is no robot beside the first any more."""
+        if self._beside is None:
+            return
+        self._beside = None
+        for plot, thin in zip(self._plots, self._thin, strict=True):
+            # A plot may have more columns than lines, but never less.
+            plot.series = plot.series[: -len(thin)]
+            plot.data = plot.data[: -len(thin)]
+
+    def _series_of_two(self) -> None:
+        for plot, thin in zip(self._plots, self._thin, strict=True):
+            nothing = np.full(len(plot.data[0]), np.nan)
+            nothing[0] = 0.0
+            plot.data = (*plot.data, *(nothing for _ in thin))
+            plot.series = (*plot.series, *thin)
 
     def forget(self) -> None:
         """Draw no dashed curves any more."""
@@ -123,8 +156,13 @@ class Plots:
             if self._clock() >= self._next and len(self._history):
                 curves = self._history.curves(self._direction, self._until)
                 self._next = self._clock() + _PERIOD
-                if self._clock() >= self._next_rest or not at_rest(curves):
+                if self._clock() >= self._next_rest or not (at_rest(curves) and self._other_rests()):
                     self._draw(curves)
+
+    def _other_rests(self) -> bool:
+        """Whether nothing changes in the curves of a robot beside the first."""
+        beside = self._beside
+        return beside is None or not len(beside) or at_rest(beside.curves(self._direction, self._until))
 
     def draw(self) -> None:
         """Draw what there is."""
@@ -138,37 +176,18 @@ class Plots:
         # A push that goes on would be filled from the last sample to the end of the window.
         pushed = _framed(np.append(curves.pushed[:-1], 0.0))
         limits = [_held(_framed(limit)) for limit in curves.limits]
-        kept = [_framed(values) for values in self._kept_curves(curves.time)]
-        places = len(_KEPT_POINTS)
-        columns = (
-            (self._places, [_framed(curves.points[name]) for name in _POINTS] + limits + kept[:places]),
-            (self._linear, [_framed(curves.linear[kind]) for kind in _KINDS] + kept[places : places + 1]),
-            (
-                self._angular,
-                [_framed(curves.angular[kind]) for kind in _KINDS] + kept[places + 1 : places + 2],
-            ),
-            (
-                self._momenta,
-                [_framed(curves.momentum), _framed(curves.angular_momentum)] + kept[places + 2 :],
-            ),
+        own = (
+            [*(_framed(curves.points[name]) for name in _POINTS), *limits],
+            [_framed(curves.linear[kind]) for kind in _KINDS],
+            [_framed(curves.angular[kind]) for kind in _KINDS],
+            [_framed(curves.momentum), _framed(curves.angular_momentum)],
         )
-        for plot, ys in columns:
-            plot.data = (x, *ys, pushed)
-
-    def _kept_curves(self, times: np.ndarray) -> list[np.ndarray]:
-        """The dashed curves at the times of the others; NaN where the kept run has nothing."""
-        if self._kept is None or not len(self._kept):
-            return [np.full(len(times), np.nan)] * (len(_KEPT_POINTS) + 4)
-        at = times + self.ahead
-        kept = self._kept.curves(self._direction, float(at[-1]))
-        values = [
-            *(kept.points[name] for name in _KEPT_POINTS),
-            kept.linear["measured"],
-            kept.angular["measured"],
-            kept.momentum,
-            kept.angular_momentum,
-        ]
-        return [np.interp(at, kept.time, each, left=np.nan, right=np.nan) for each in values]
+        kept = curves_at(self._kept, self._direction, curves.time + self.ahead)
+        beside: list[list[np.ndarray]] = [[], [], [], []]
+        if self._beside is not None:
+            beside = curves_at(self._beside, self._direction, curves.time)
+        for plot, first, dashed, thin in zip(self._plots, own, kept, beside, strict=True):
+            plot.data = (x, *first, *map(_framed, dashed), pushed, *map(_framed, thin))
 
 
 def at_rest(curves: Curves) -> bool:
@@ -221,6 +240,11 @@ def _rates() -> list[dict[str, Any]]:
 def _kept_line(color: Color) -> dict[str, Any]:
     """A curve of a kept run: dashed and pale, without a name of its own."""
     return {**_line("", color, [4, 4]), "stroke": _css(color, 0.75)}
+
+
+def _thin_line(color: Color) -> dict[str, Any]:
+    """A curve of the robot beside the first: thin, without a name of its own."""
+    return {**_line("", color), "width": 0.8}
 
 
 def _line(label: str, color: Color, dash: list[int] | None = None) -> dict[str, Any]:

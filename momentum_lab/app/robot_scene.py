@@ -2,19 +2,37 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
-import viser
 
 from momentum_lab.app.marks import Color
 from momentum_lab.app.robots import LoadedRobot
+from momentum_lab.app.viewer import Viewer
 
 _FREE_FLYER = 1
-# Less than this does not show, rad and m.
-_SAME_ANGLE, _SAME_PLACE = 6e-4, 2e-4
 _SEE_THROUGH = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class Least:
+    """The smallest motion that is sent.
+
+    Attributes:
+        angle: of a joint, rad.
+        place: of the base, m.
+    """
+
+    angle: float
+    place: float
+
+
+ON_SCREEN = Least(angle=6e-4, place=2e-4)
+"""Less than this does not show."""
+EXACTLY = Least(angle=0.0, place=0.0)
+"""What is kept may be measured later."""
 
 
 class RobotScene:
@@ -26,17 +44,19 @@ class RobotScene:
         q: its configuration (nq,).
         root: name of the node that everything hangs below.
         color: of all its meshes, red, green, blue, 0 to 255; None: their own.
+        least: the smallest motion that is sent.
     """
 
     def __init__(
         self,
-        client: viser.ClientHandle,
+        client: Viewer,
         robot: LoadedRobot,
         q: np.ndarray,
         root: str = "/robot",
         color: Color | None = None,
+        least: Least = ON_SCREEN,
     ) -> None:
-        self._root = root
+        self._root, self._least = root, least
         self._model = robot.model.model
         self._data = self._model.createData()
         pin.forwardKinematics(self._model, self._data, q)
@@ -62,10 +82,10 @@ class RobotScene:
         """Move to a configuration (nq,)."""
         if not np.isfinite(q).all():
             return
-        angles = np.flatnonzero(np.abs(q[7:] - self._drawn[7:]) > _SAME_ANGLE)
+        angles = np.flatnonzero(np.abs(q[7:] - self._drawn[7:]) > self._least.angle)
         base = np.abs(q[:7] - self._drawn[:7])
         moved = [self._joint_of(i) for i in angles]
-        if base[:3].max() > _SAME_PLACE or base[3:].max() > 0.5 * _SAME_ANGLE:
+        if base[:3].max() > self._least.place or base[3:].max() > 0.5 * self._least.angle:
             moved.append(_FREE_FLYER)
             self._drawn[:7] = q[:7]
         if not moved:
@@ -97,7 +117,7 @@ class RobotScene:
         """Index of the joint that an actuated angle belongs to: one each, after the universe and the base."""
         return int(angle) + 2
 
-    def _add_frames(self, client: viser.ClientHandle) -> dict[int, Any]:
+    def _add_frames(self, client: Viewer) -> dict[int, Any]:
         """One frame per joint, below that of its parent."""
         frames: dict[int, Any] = {}
         for joint in range(_FREE_FLYER, self._model.njoints):

@@ -24,6 +24,15 @@ class LoadedRobot:
     meshes: tuple[LinkMesh, ...]
     layout: Layout
 
+    @classmethod
+    def of(cls, model: RobotModel) -> LoadedRobot:
+        """A robot with its meshes.
+
+        Raises:
+            RobotError: a mesh is missing.
+        """
+        return cls(model, visual_meshes(model), Layout.of(model))
+
 
 class RobotShelf:
     """Loads each robot when it is asked for the first time."""
@@ -40,6 +49,5 @@ class RobotShelf:
         """
         with self._lock:
             if name not in self._robots:
-                model = RobotModel.named(name)
-                self._robots[name] = LoadedRobot(model, visual_meshes(model), Layout.of(model))
+                self._robots[name] = LoadedRobot.of(RobotModel.named(name))
             return self._robots[name]

@@ -47,7 +47,7 @@ class RunsPanel:
         self.wants_kept = self.wants_forgotten = False
         self._has_kept = False
         self._next, self._text = -math.inf, ""
-        gui.add_html(html.sentence("Two robots, pushed alike:"))
+        gui.add_html(html.sentence("Two robots, pushed alike; the curves of the second one are thin:"))
         self._second: Bound[bool] = Bound(
             gui.add_checkbox("a second robot", truth.beside is not None), self._with_second, post
         )

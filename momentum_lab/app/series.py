@@ -36,6 +36,7 @@ class Curves:
         momentum: linear momentum along the push, N s.
         angular_momentum: about the axis across the push, kg m^2/s.
         pushed: 1 while a push acts, else 0.
+        fallen: whether the robot has fallen.
     """
 
     time: np.ndarray
@@ -46,6 +47,7 @@ class Curves:
     momentum: np.ndarray
     angular_momentum: np.ndarray
     pushed: np.ndarray
+    fallen: np.ndarray
 
 
 class History:
@@ -87,10 +89,14 @@ class History:
 
     def copy(self) -> History:
         """The same samples, to which nothing is added any more."""
-        other = History(self._robot, self._layout)
+        other = self.another()
         other._times, other._rows = list(self._times), list(self._rows)
         other._polygons, other._extents = list(self._polygons), [None] * len(self._extents)
         return other
+
+    def another(self) -> History:
+        """An empty one for a robot like this one's."""
+        return History(self._robot, self._layout)
 
     def clear(self) -> None:
         """Forget everything."""
@@ -129,6 +135,7 @@ class History:
             momentum=column["momentum"][:, :3] @ along,
             angular_momentum=column["momentum"][:, 3:] @ across,
             pushed=(np.abs(column["push_wrench"]).max(axis=1) > 0.0).astype(float),
+            fallen=column["fallen"] > 0.0,
         )
 
     def _limits(self, direction: np.ndarray, window: slice) -> np.ndarray:

@@ -13,13 +13,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 
-import rich
 import viser
 
 from momentum_lab.app.control_panel import Choices
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import warm_up
 from momentum_lab.app.profile import NORMAL, RenderProfile
+from momentum_lab.app.quiet import quiet
 from momentum_lab.app.robots import RobotShelf
 from momentum_lab.app.visitor import Visitor
 from momentum_lab.errors import ServerError
@@ -76,7 +76,7 @@ class LabServer:
         self._lock = threading.Lock()
         # A tab may close while a picture for it is under way; viser says so for every such picture.
         warnings.filterwarnings("ignore", message=r"Queued a \w+ on a closed connection")
-        with _quiet():
+        with quiet():
             self._viser = viser.ViserServer(host=host, port=port, verbose=False)
         self.host, self.port = host, self._viser.get_port()
         if port not in (0, self.port):
@@ -99,7 +99,7 @@ class LabServer:
 
     def close(self) -> None:
         """End all sessions and give the port back."""
-        with _quiet():
+        with quiet():
             self._viser.stop()
         for visitor in self.visitors:
             visitor.close()
@@ -185,17 +185,6 @@ def _ended_by_signal() -> Iterator[threading.Event]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Viser announces itself on the console; the lab does that in its own words."""
-    console = rich.get_console()
-    before, console.quiet = console.quiet, True
-    try:
-        yield
-    finally:
-        console.quiet = before
 
 
 def _check_address(host: str, port: int) -> None:

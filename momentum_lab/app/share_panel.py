@@ -20,15 +20,17 @@ from momentum_lab.share_code import from_code, link, to_code
 _INTRODUCTION = (
     "A run is its scenario and all that was done in it. Whoever opens it sees the same run, to the last bit."
 )
-_VIEW = "picture of the view (.png)"
 # What can be downloaded: kind and how its file name ends.
 _FILES = {
     "report (.html)": ("report", "-report.html"),
     "run file (.json)": ("run", ".json"),
     "trace, every tick (.npz)": ("trace", ".npz"),
     "table (.csv)": ("table", ".csv"),
-    "plots (.png)": ("plots", "-plots.png"),
-    _VIEW: ("view", "-view.png"),
+    "picture of the view (.png)": ("view", "-view.png"),
+    "picture of the plots (.png)": ("plots", "-plots.png"),
+    "recording to play (.html)": ("recording", "-recording.html"),
+    "recording (.viser)": ("viser", ".viser"),
+    "film (.mp4)": ("film", ".mp4"),
 }
 
 
@@ -42,6 +44,7 @@ class Sharing:
         tell: shows a person what was wrong.
         send: lets the browser save a file of a name.
         view: a picture of what the browser shows, as a PNG file.
+        film: a run as an .mp4 file; it is told the fraction that is done, and ends when that raises an error.
         url: where the lab is served.
     """
 
@@ -50,6 +53,7 @@ class Sharing:
     tell: Callable[[str], None]
     send: Callable[[str, bytes], None]
     view: Callable[[], bytes]
+    film: Callable[[RunTaken, Callable[[float], None]], bytes]
     url: str
 
 
@@ -80,9 +84,15 @@ class SharePanel:
         )
         self._opened = gui.add_html("")
         self._what = gui.add_dropdown(
-            "file", tuple(_FILES), hint="All but the run file hold the last minute since the robot stood up."
+            "file",
+            tuple(_FILES),
+            hint="All but the run file hold the last minute since the robot stood up, and of two robots the first.",
         )
         self._download = gui.add_button("Download", color="gray", icon=viser.Icon.DOWNLOAD)
+        self._progress = gui.add_html("", visible=False)
+        self._stop = gui.add_button("Stop the film", color="gray", icon=viser.Icon.PLAYER_STOP, visible=False)
+        self._stopped = threading.Event()
+        self._stop.on_click(lambda _: self._stopped.set())
         make.on_click(lambda _: self._attempt(self._make_code))
         open_code.on_click(lambda _: self._attempt(lambda: self._open_code(self._pasted.value)))
         upload.on_upload(lambda event: self._attempt(lambda: self._open_file(event.target.value)))
@@ -125,15 +135,42 @@ class SharePanel:
         kind, end = _FILES[self._what.value]
         self._download.disabled = True
         try:
+            self._show(f"{self._what.value}: being made, the run goes on.")
             taken = self._sharing.take(kind not in ("run", "view"))
             self._sharing.send(file_name(taken.run) + end, self._content(kind, taken))
         finally:
             self._download.disabled = False
+            self._show("")
 
     def _content(self, kind: str, taken: RunTaken) -> bytes:
         if kind == "view":
             return self._sharing.view()
+        if kind == "film":
+            return self._film(taken)
         return encoded(taken.run) if kind == "run" else made_elsewhere(kind, taken)
+
+    def _film(self, taken: RunTaken) -> bytes:
+        self._stopped.clear()
+        self._stop.visible = True
+        percents = set[int]()
+
+        def report(fraction: float) -> None:
+            if self._stopped.is_set():
+                raise LabError("The film was stopped.")
+            percent = int(100.0 * fraction)
+            if percent not in percents:
+                percents.add(percent)
+                self._show(f"film: {percent} % of its pictures taken, keep this tab in sight.")
+
+        try:
+            return self._sharing.film(taken, report)
+        finally:
+            self._stop.visible = False
+
+    def _show(self, words: str) -> None:
+        """One line about a file that is being made; none without words."""
+        self._progress.content = html.sentence(words)
+        self._progress.visible = bool(words)
 
 
 def file_name(run: Run) -> str:

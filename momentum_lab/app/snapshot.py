@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 
 import numpy as np
 import viser
@@ -21,15 +22,27 @@ def view_of(client: viser.ClientHandle) -> bytes:
         InputError: the browser does not answer.
     """
     camera = client.camera
-    try:
-        pixels = client.get_render(
-            camera.image_height, camera.image_width, transport_format="png", timeout=_PATIENCE
+    return encoded(
+        render(
+            lambda patience: client.get_render(
+                camera.image_height, camera.image_width, transport_format="png", timeout=patience
+            )
         )
-    except TimeoutError as error:
+    )
+
+
+def render(ask: Callable[[float], np.ndarray]) -> np.ndarray:
+    """The picture (h, w, 3 or 4) that a browser answers with; it is told for how long it is waited for, s.
+
+    Raises:
+        InputError: it does not answer, or has gone.
+    """
+    try:
+        return ask(_PATIENCE)
+    except (TimeoutError, RuntimeError) as error:
         raise InputError(
             "picture", "no answer", "a browser that draws: pause the run and try again"
         ) from error
-    return encoded(pixels)
 
 
 def encoded(pixels: np.ndarray) -> bytes:

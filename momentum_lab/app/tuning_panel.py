@@ -1,4 +1,4 @@
-"""Gains of one controller: presets, sliders from their declarations, what has changed, steps back and forth."""
+"""Gains of one controller: presets, sliders from their declarations, what has changed since."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.response_sliders import ResponseSliders
-from momentum_lab.app.tuning_history import TuningHistory
 from momentum_lab.app.widgets import Bound, Post, nice_step
 from momentum_lab.app.wire import Truth
 from momentum_lab.control.gains import GainInfo, declared_gains
@@ -20,7 +19,6 @@ from momentum_lab.events import SetGain, SetGains
 
 # Viser breaks labels after a slash; this one it does not know.
 _TYPOGRAPHY = str.maketrans("/", "∕")
-_UNDO, _REDO = "Undo", "Redo"
 
 
 class TuningPanel:
@@ -40,11 +38,9 @@ class TuningPanel:
         self._presets = {name: p.values(truth.controller) for name, p in presets(truth.controller).items()}
         self._base = STANDARD
         self._values = dict(truth.gains)
-        self._history = TuningHistory(truth.gains)
         self._preset: Any = gui.add_dropdown(
             "preset", tuple(self._presets), initial_value=STANDARD, hint="Sets all gains of this controller."
         )
-        self._steps = gui.add_button_group("change", (_UNDO, _REDO))
         self._folder = gui.add_folder("Gains", expand_by_default=False)
         with self._folder:
             self._response = ResponseSliders(gui, post, truth.gains)
@@ -63,7 +59,6 @@ class TuningPanel:
             keep = gui.add_button("Save as a preset", color="gray", icon=viser.Icon.DEVICE_FLOPPY)
         self._texts: dict[str, str] = {}
         self._preset.on_update(self._choose)
-        self._steps.on_click(lambda event: self._step(event.target.value))
         self._reset.on_click(lambda _: self._set(self._presets[self._base]))
         keep.on_click(lambda _: self._keep())
         self._tell_changes()
@@ -73,7 +68,6 @@ class TuningPanel:
         for name, slider in self._sliders.items():
             slider.follow(truth.gains[name])
         self._response.follow(truth.gains)
-        self._history.note(truth.gains)
         if truth.gains == self._values:
             return
         self._values = dict(truth.gains)
@@ -85,7 +79,6 @@ class TuningPanel:
         """Leave the tab."""
         for handle in (
             self._preset,
-            self._steps,
             self._folder,
             self._changed,
             *self._resets.values(),
@@ -136,13 +129,6 @@ class TuningPanel:
         if base != self._base:
             self._base = base
             self._preset.value = base
-
-    def _step(self, name: str) -> None:
-        values = self._history.back() if name == _UNDO else self._history.forth()
-        if values:
-            self._post(SetGains(values))
-        else:
-            self._tell(f"There is nothing to {name.lower()}.")
 
     def _set(self, values: dict[str, float]) -> None:
         changed = {name: value for name, value in values.items() if self._values.get(name) != value}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import threading
 import traceback
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +14,8 @@ import viser
 from momentum_lab.app.camera import LOOSE, START_VIEW, TIGHT, VIEWS, Camera
 from momentum_lab.app.comparison import Comparison
 from momentum_lab.app.control_panel import Choices
+from momentum_lab.app.exporter import finished
+from momentum_lab.app.film import film
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
@@ -21,18 +24,18 @@ from momentum_lab.app.overlays import Picture, overlays
 from momentum_lab.app.panels import Panels
 from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.profile import RenderProfile
+from momentum_lab.app.reel import Reel
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot, RobotShelf
 from momentum_lab.app.share_panel import Sharing
 from momentum_lab.app.snapshot import view_of
-from momentum_lab.app.wire import Frame, Truth, rows_of
+from momentum_lab.app.telling import told
+from momentum_lab.app.wire import Frame, RunTaken, Truth, rows_of
 from momentum_lab.app.world import add_floor, add_world
 from momentum_lab.errors import InputError
 from momentum_lab.events import Event
 from momentum_lab.recording import Sample
 from momentum_lab.run_file import Run
-from momentum_lab.session import Fall
-from momentum_lab.status import status_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,8 +205,16 @@ class Visitor:
             self.tell,
             lambda name, content: self._client.send_file_download(name, content, save_immediately=True),
             lambda: view_of(self._client),
+            self._film,
             self._url,
         )
+
+    def _film(self, taken: RunTaken, report: Callable[[float], None]) -> bytes:
+        """A run as this tab would show it, as an .mp4 file."""
+        if self._panels is None:
+            raise InputError("film", "a page without panels", "a page that has been loaded")
+        reel = Reel.of(finished(taken), self._shelf.get(taken.run.scenario.robot))
+        return film(self._client, reel, self._panels.settings, report)
 
     def _receive(self, panels: Panels, stage: Stage) -> None:
         """Fit the panels to the robot on stage."""
@@ -235,15 +246,14 @@ class Visitor:
 
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
         truth = frame.truth
-        fall = None if truth.fall is None else Fall(truth.fall.time, truth.fall.reason)
-        status = status_of(sample, loaded.model, fall, truth.failure, truth.stopped)
-        panels.status.follow(truth, status, sample.number("time"))
+        panels.status.follow(truth, told(frame, sample, loaded), sample.number("time"))
         panels.control.follow(truth)
         panels.learn.follow(truth, sample.number("time"), frame.lesson)
         panels.share.follow(truth)
         panels.ground.follow(truth)
         panels.mismatch.follow(truth)
         panels.control.see(sample)
+        panels.control.bounds.see(sample, loaded.model, truth)
         if truth.fall is None:
             panels.push.see(sample)
         panels.push.refresh()

@@ -177,28 +177,18 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
         run: scenario, events, length.
         rows: all samples that are kept, float64, oldest first; empty if they were not wanted.
         time: of the session, s.
-        controller: its name.
-        planner: its name.
-        priority: from 0 to 1.
-        gains: all gains of the controller.
         pushes: all pushes, sized.
         fall: when and why the robot has fallen; None: it has not.
         failures: how many solves have failed.
-        mismatch: how the real robot differs from its model.
         com_speed: of the CoM against the ground under the feet at the end, m/s.
     """
 
     run: Run
     rows: bytes
     time: float
-    controller: str
-    planner: str
-    priority: float
-    gains: dict[str, float]
     pushes: tuple[Push, ...]
     fall: Fallen | None
     failures: int
-    mismatch: Mismatch
     com_speed: float
 
 

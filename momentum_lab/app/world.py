@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import viser
-
 from momentum_lab.app.profile import RenderProfile
+from momentum_lab.app.viewer import Viewer
 
 
-def add_world(client: viser.ClientHandle, profile: RenderProfile) -> None:
+def add_world(client: Viewer, profile: RenderProfile) -> None:
     """Put floor and light into a browser tab's scene."""
     client.scene.configure_default_lights(enabled=True, cast_shadow=profile.shadows)
     if not profile.environment:
@@ -15,10 +14,10 @@ def add_world(client: viser.ClientHandle, profile: RenderProfile) -> None:
     add_floor(client, 0.0)
 
 
-def add_floor(client: viser.ClientHandle, height: float) -> None:
-    """Put the floor at a height, m."""
+def add_floor(client: Viewer, height: float, root: str = "") -> None:
+    """Put the floor at a height, m, below a node; without one below the world's."""
     client.scene.add_grid(
-        "/ground",
+        f"{root}/ground",
         position=(0.0, 0.0, height),
         infinite_grid=True,
         fade_distance=14.0,

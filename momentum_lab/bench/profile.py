@@ -15,6 +15,15 @@ from momentum_lab.session import Session
 
 # Every array that a compiled function returns passes through this function of numba's; it is not counted.
 _INSIDE_NUMBA = getattr(getattr(serialize, "_numba_unpickle", None), "__code__", None)
+# The last word of what a session calls in a tick -> its stage; everything else is the session's own.
+_STAGE = {
+    "dynamics": "state terms",
+    "_believed": "state terms",
+    "_control": "controller",
+    "step": "physics",
+    "_record": "recording",
+}
+SESSION = "session"
 _WARM_UP, _COUNTED, _PROFILED = 20, 50, 300
 
 
@@ -104,6 +113,20 @@ def profile(session: Session, least: float = 1.0) -> list[ProfileRow]:
 
     _watched(session, _PROFILED, watch)
     return _rows(root, 0, least)
+
+
+def stages_of(rows: list[ProfileRow]) -> dict[str, float]:
+    """Time of each stage of a tick, us, in the order in which they happen; they add up to the tick.
+
+    Args:
+        rows: the tree of calls of a tick.
+    """
+    stages = dict.fromkeys([*_STAGE.values(), SESSION], 0.0)
+    for row in rows:
+        if row.depth == 1:
+            stages[_STAGE.get(row.name.rpartition(".")[2], SESSION)] += row.total
+    stages[SESSION] += rows[0].total - sum(stages.values())
+    return stages
 
 
 def _watched(session: Session, ticks: int, watch: Any) -> None:

@@ -1,6 +1,6 @@
 """The command line: momentum-lab COMMAND ...
 
-COMMAND: app | run | limit | report | replay | lesson | figure | list | equations | robot-check | bench.
+COMMAND: app | run | limit | report | record | replay | lesson | figure | list | equations | robot-check | bench.
 
 Exit codes: 0 the command did what was asked (a robot that falls is a result, not an error), 1 something broke
 down on the way, a figure's or lesson's claim or an equation does not hold, or a checked robot falls, 2 bad
@@ -80,6 +80,10 @@ def _imported(name: str) -> Callable[[Namespace], int]:
         from momentum_lab.cli.report import report
 
         return report
+    if name == "record":
+        from momentum_lab.cli.record import record
+
+        return record
     if name == "replay":
         from momentum_lab.cli.replay import replay
 

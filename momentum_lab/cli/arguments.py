@@ -26,6 +26,7 @@ COMMANDS = (
     "run",
     "limit",
     "report",
+    "record",
     "replay",
     "lesson",
     "figure",
@@ -110,6 +111,7 @@ def _parser() -> _Parser:
         ("run", "run a scenario without a screen", _run_arguments),
         ("limit", "the largest push that is survived, by bisection", _limit_arguments),
         ("report", "a run as one HTML file: figures, numbers, gains, checks, limits", _report_arguments),
+        ("record", "a run as one file that plays in a browser without the lab", _record_arguments),
         (
             "replay",
             "play a run file or a trace again and say whether every bit is the same",
@@ -149,6 +151,7 @@ def _usage(command: str) -> str:
         "run": "run SCENARIO",
         "limit": "limit SCENARIO",
         "report": "report SCENARIO --out FILE",
+        "record": "record SCENARIO --out FILE",
         "replay": "replay FILE",
         "lesson": "lesson NAME",
         "figure": "figure NAME --out DIR",
@@ -186,6 +189,11 @@ def _run_arguments(parser: _Parser) -> None:
 def _report_arguments(parser: _Parser) -> None:
     _scenario_arguments(parser)
     parser.add_argument("--out", metavar="FILE", help="where the report goes, an .html file")
+
+
+def _record_arguments(parser: _Parser) -> None:
+    _scenario_arguments(parser)
+    parser.add_argument("--out", metavar="FILE", help="where the recording goes, an .html or .viser file")
 
 
 def _replay_arguments(parser: _Parser) -> None:

@@ -13,7 +13,7 @@ from rich.table import Table
 
 from momentum_lab.app.figures import Figure, figures
 from momentum_lab.bench.measure import ROBOTS, Percentiles, RobotBench, measure
-from momentum_lab.bench.profile import ProfileRow, profile
+from momentum_lab.bench.profile import ProfileRow, profile, stages_of
 from momentum_lab.bench.stages import STAGES
 from momentum_lab.cli.progress import progress
 from momentum_lab.errors import InputError
@@ -132,8 +132,23 @@ def _profile(args: Namespace) -> int:
     return 0
 
 
+def _stages(name: str, rows: list[ProfileRow]) -> Table:
+    table = Table(title=f"A tick of {name}, stage by stage", box=None)
+    table.add_column("stage", min_width=30)
+    table.add_column("us", justify="right", min_width=6)
+    table.add_column("share of the tick", min_width=_BAR)
+    for stage, total in stages_of(rows).items():
+        table.add_row(stage, f"{total:.1f}", _bar(total / rows[0].total))
+    return table
+
+
+def _bar(share: float) -> str:
+    return "\u2588" * round(_BAR * share)
+
+
 def _show_profile(name: str, rows: list[ProfileRow]) -> None:
     console = Console(markup=False)
+    console.print(_stages(name, rows))
     table = Table(title=f"A tick of {name}, call by call", box=None)
     width = max(30, console.width - _BAR - 30)  # the numbers are worth more than the ends of names
     table.add_column("function", overflow="ellipsis", no_wrap=True, max_width=width)
@@ -141,7 +156,7 @@ def _show_profile(name: str, rows: list[ProfileRow]) -> None:
         table.add_column(heading, justify="right", no_wrap=True, min_width=6)
     table.add_column("share of the tick", min_width=_BAR)
     for row in rows:
-        bar = "\u2588" * round(_BAR * row.total / rows[0].total)
+        bar = _bar(row.total / rows[0].total)
         numbers = (f"{row.calls:.1f}", f"{row.own:.1f}", f"{row.total:.1f}")
         table.add_row(f"{'  ' * row.depth}{row.name}", *numbers, bar)
     table.caption = "being watched makes every call about a microsecond slower"

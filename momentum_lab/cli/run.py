@@ -12,6 +12,7 @@ import msgspec
 from rich.console import Console
 from rich.table import Table
 
+from momentum_lab.active_bounds import held_for
 from momentum_lab.cli.choices import chosen_run
 from momentum_lab.cli.progress import interruptible, progress
 from momentum_lab.errors import InputError, SimulationError
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from momentum_lab.cli.beside import Second
 
 Made = TypeVar("Made")
+_MOST_BOUNDS = 5
 
 
 def run(args: Namespace) -> int:
@@ -58,7 +60,10 @@ def run(args: Namespace) -> int:
     if args.json:
         print(msgspec.json.encode(summary).decode())
     else:
-        show(summary, out)
+        show(summary)
+        print(f"bounds: {_bounds(session)}")
+        if out is not None:
+            print(f"trace: {out}")
     errors = [each.error for each in (summary, summary.beside) if each is not None and each.error is not None]
     for error in errors:
         _note(error)
@@ -87,7 +92,7 @@ def said(agreement: Agreement) -> str:
     return f"other bits: {agreement.compared}; {agreement.difference}"
 
 
-def show(summary: Summary, out: Path | None) -> None:
+def show(summary: Summary) -> None:
     """The summary for people, on stdout."""
     table = Table(title=f"{summary.scenario}: {summary.robot}, {summary.controller}", show_header=False)
     robots = [summary] if summary.beside is None else [summary, summary.beside]
@@ -97,8 +102,14 @@ def show(summary: Summary, out: Path | None) -> None:
         table.add_row("controller", *(each.controller for each in robots))
         table.add_row("priority", *(f"{each.priority:g}" for each in robots))
     Console(markup=False).print(table)
-    if out is not None:
-        print(f"trace: {out}")
+
+
+def _bounds(session: Session) -> str:
+    """The bounds that the first robot was held by for longest."""
+    held = list(held_for(session).items())
+    words = [f"{bound.holder}: {bound.what} {seconds:.2f} s" for bound, seconds in held[:_MOST_BOUNDS]]
+    rest = len(held) - len(words)
+    return "; ".join([*words, *([f"{rest} more"] if rest else [])]) or "none"
 
 
 def _second(chosen: Run) -> Second:

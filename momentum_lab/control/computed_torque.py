@@ -23,7 +23,7 @@ from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
 # A sole of a few centimetres turns on its own friction with about this lever, m.
-_YAW_LEVER = 0.03
+YAW_LEVER = 0.03
 # Eq. 36 integrates accelerations; what did not come true is forgotten with this time constant, s.
 _FORGETTING_TIME = 0.05
 
@@ -196,7 +196,7 @@ class ComputedTorque:
         """Step 1: admissible wrenches of the feet."""
         bounds = ForceBounds(
             friction=gains.friction,
-            normal_moment=_YAW_LEVER * gains.friction,
+            normal_moment=YAW_LEVER * gains.friction,
             least_force=gains.least_foot_force * self.robot.mass * GRAVITY,
         )
         return self.footing.share(stance, balance.force, balance.angular_rate, bounds)

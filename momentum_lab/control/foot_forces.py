@@ -31,7 +31,7 @@ from momentum_lab.robot.state import Dynamics
 
 # A sole this far above the ground, m, is no longer counted on; contact itself lifts less.
 _IN_THE_AIR = 0.005
-_FACETS = 8
+FACETS = 8
 # Stage 1: weights of the angular rate against the force, and of small forces against both.
 _ANGULAR_WEIGHT = 0.02
 _SMALL_FORCE_WEIGHT = 1e-4
@@ -280,23 +280,23 @@ def _forces(feet: StanceFeet, force: np.ndarray, angular_rate: np.ndarray, bound
 @lru_cache(maxsize=64)
 def _pyramid(friction: float) -> np.ndarray:
     """Rows n with n . f <= 0 inside a pyramid within the friction cone, then one with -f_n (facets + 1, 3)."""
-    angle = 2.0 * math.pi * np.arange(_FACETS) / _FACETS
-    inscribed = friction * math.cos(math.pi / _FACETS)
-    facets = np.column_stack([np.cos(angle), np.sin(angle), np.full(_FACETS, -inscribed)])
+    angle = 2.0 * math.pi * np.arange(FACETS) / FACETS
+    inscribed = friction * math.cos(math.pi / FACETS)
+    facets = np.column_stack([np.cos(angle), np.sin(angle), np.full(FACETS, -inscribed)])
     return np.vstack([facets, [0.0, 0.0, -1.0]])
 
 
 @lru_cache(maxsize=64)
 def _pressing(count: int, least_force: float) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper bounds of all forces and of the rows of `_pyramid` for each foot."""
-    upper = np.concatenate([np.full(3 * count, np.inf), *[np.zeros(_FACETS), [-least_force]] * count])
+    upper = np.concatenate([np.full(3 * count, np.inf), *[np.zeros(FACETS), [-least_force]] * count])
     return np.full(upper.size, -np.inf), upper
 
 
 @lru_cache(maxsize=8)
 def _labels(names: tuple[str, ...]) -> tuple[tuple[int, str], ...]:
     per_foot = [
-        ((_FACETS, f"friction of the {name} foot"), (1, f"least force of the {name} foot")) for name in names
+        ((FACETS, f"friction of the {name} foot"), (1, f"least force of the {name} foot")) for name in names
     ]
     return ((3 * len(names), "unbounded"), *(label for labels in per_foot for label in labels))
 

@@ -119,9 +119,9 @@ def draw(runs: Runs) -> Any:
         "$k_y$ [N m s]",
         lambda run: run.recording.column("momentum")[:, 4],
     )
-    axes[0, 2].set_ylim(-20.0, 250.0)
     highest = largest(session.recording.column("momentum")[:, 4])
-    axes[1, 2].set_ylim(-0.5 * highest, 1.3 * highest)
+    _cut(axes[0, 2], -20.0, 250.0)
+    _cut(axes[1, 2], -0.5 * highest, 1.3 * highest)
     return picture
 
 
@@ -139,6 +139,27 @@ def _over_time(axes: Any, runs: Runs, title: str, unit: str, values: Any) -> Non
     band(axes, runs[LINEAR])
     axes.set_xlim(0.0, runs[LINEAR].scenario.seconds)
     finish(axes, title, "time [s]", unit, loc="upper right")
+
+
+def _cut(axes: Any, low: float, high: float) -> None:
+    """Show a range, and say how far the curves go on outside it."""
+    axes.set_ylim(low, high)
+    for line in axes.get_lines():
+        time, values = (np.asarray(data, dtype=float) for data in line.get_data())
+        outside = np.flatnonzero((values < low) | (values > high))
+        if len(values) < 3 or not len(outside):
+            continue
+        first, furthest = outside[0], values[np.abs(values).argmax()]
+        axes.annotate(
+            f"goes on to {furthest:.3g}",
+            (time[first], high if values[first] > high else low),
+            (-8, -10 if values[first] > high else 10),
+            textcoords="offset points",
+            ha="right",
+            va="center",
+            fontsize="small",
+            color=line.get_color(),
+        )
 
 
 FIGURE = Figure("fig7", "The same push, and which momentum gives way", scenarios, draw, table, claims)

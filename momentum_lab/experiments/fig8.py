@@ -65,7 +65,7 @@ def claims(runs: Runs) -> list[Claim]:
     # from the very edge, a border's width away; a sole that tips and lands leaves a tick or two behind.
     quick = (clock < push_start(session)) | (clock > push_end(session))
     within = np.mean(
-        difference[quick & (clock < push_end(session) + 0.5)] <= session.gains.safe_border + _EDGE
+        difference[quick & (clock < push_end(session) + 0.5)] <= session.choices.gains.safe_border + _EDGE
     )
     return [
         stands("the robot", session),
@@ -121,7 +121,7 @@ def _spin(session: Session) -> float:
 
 def front_border(session: Session) -> float:
     """Front border of the safe region of a sole, from its origin, m."""
-    return float(session.robot.soles[0].upper[0]) - float(session.gains.safe_border)
+    return float(session.robot.soles[0].upper[0]) - float(session.choices.gains.safe_border)
 
 
 def table(runs: Runs) -> Columns:
@@ -202,7 +202,7 @@ def _rates(axes: Any, data: Columns, key: str, unit: str, title: str) -> None:
 
 
 def _foot(axes: Any, session: Session, data: Columns, letter: str, foot: str) -> None:
-    sole, border = session.robot.soles[_feet(session).index(foot)], float(session.gains.safe_border)
+    sole, border = session.robot.soles[_feet(session).index(foot)], float(session.choices.gains.safe_border)
     clock = data["time [s]"]
     axes.plot(
         clock, _MM * np.asarray(data[f"CoP x of {foot} foot, measured [m]"]), color=COP, label="measured"

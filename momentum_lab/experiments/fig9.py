@@ -100,7 +100,7 @@ def outer_border(session: Session) -> float:
     """The outer safe border of the stance sole, outward from its origin, m."""
     sole = session.robot.soles[stance_foot(session)]
     edge = sole.upper[1] if outward(session) > 0.0 else -sole.lower[1]
-    return float(edge) - float(session.gains.safe_border)
+    return float(edge) - float(session.choices.gains.safe_border)
 
 
 def _outside(session: Session) -> float:
@@ -109,12 +109,12 @@ def _outside(session: Session) -> float:
         session.recording.column("com")[0, 1]
         - session.recording.column("sole_pose")[0, stance_foot(session), 1]
     )
-    return float(outward(session) * y - outer_border(session) - session.gains.safe_border)
+    return float(outward(session) * y - outer_border(session) - session.choices.gains.safe_border)
 
 
 def com_acceleration(session: Session) -> tuple[np.ndarray, np.ndarray]:
     """Desired (Eq. 42) and commanded lateral acceleration of the CoM (n,) each, m/s^2."""
-    gains, column = session.gains, session.recording.column
+    gains, column = session.choices.gains, session.recording.column
     desired = -gains.com_stiffness * com_outside_goal(session)[:, 1]
     desired = desired - gains.com_damping * column("com_velocity")[:, 1]
     return desired, column("momentum_rate_admissible")[:, 1] / session.robot.mass
@@ -200,7 +200,7 @@ def _positions(axes: Any, session: Session, data: Columns) -> None:
     axes.plot(data["time [s]"], _MM * com, color=COM, label="CoM")
     axes.plot(data["time [s]"], _MM * np.asarray(data["CoP outward in the sole [m]"]), color=COP, label="CoP")
     axes.axhline(_MM * outer_border(session), ls=":", color=INK, lw=1.0, label="safe border")
-    edge = outer_border(session) + float(session.gains.safe_border)
+    edge = outer_border(session) + float(session.choices.gains.safe_border)
     axes.axhline(_MM * edge, color=MUTED, lw=1.0, label="edge of the sole")
     finish(axes, "(B) outward in the stance sole", "time [s]", "y [mm]", loc="upper right")
 

@@ -38,10 +38,10 @@ def scenarios(robot: str | None) -> dict[str, Scenario]:
 
 def asked(session: Session) -> np.ndarray:
     """The loop that the joints are told to go (n, na), rad, whether they go it or not."""
-    courses = MOTIONS[session.motion].courses.values()
+    courses = MOTIONS[session.choices.motion].courses.values()
     ways = np.array([[course(time)[0] for course in courses] for time in times(session)])
     start = session.recording.column("q")[0, 7:]
-    return np.asarray(start + ways @ reach_of(session.robot, session.motion))
+    return np.asarray(start + ways @ reach_of(session.robot, session.choices.motion))
 
 
 def foretold(session: Session) -> np.ndarray:
@@ -125,7 +125,9 @@ def table(runs: Runs) -> Columns:
     ways = done(left)
     return {
         "time [s]": times(left),
-        **{f"{name} [1]": way for name, way in zip(MOTIONS[left.motion].courses, ways.T, strict=True)},
+        **{
+            f"{name} [1]": way for name, way in zip(MOTIONS[left.choices.motion].courses, ways.T, strict=True)
+        },
         "CoM z [m]": left.recording.column("com")[:, _Z],
         **{f"k_{name} [N m s]": spin(left)[:, axis] for axis, name in enumerate("xyz")},
         "k_z of the body as one [N m s]": body,
@@ -152,7 +154,7 @@ def _as_long(column: np.ndarray, rows: int) -> list[Any]:
 
 def done(session: Session) -> np.ndarray:
     """How far the joints are on each course of their motion (n, courses), 1."""
-    reach = reach_of(session.robot, session.motion)
+    reach = reach_of(session.robot, session.choices.motion)
     angles = session.recording.column("q")[:, 7:]
     return np.asarray((angles - angles[0]) @ np.linalg.pinv(reach))
 
@@ -175,9 +177,11 @@ def draw(runs: Runs) -> Any:
 
 
 def _loop(axes: Any, session: Session) -> None:
-    first, second = MOTIONS[session.motion].courses
+    first, second = MOTIONS[session.choices.motion].courses
     ways = done(session)
-    told = (asked(session) - asked(session)[0]) @ np.linalg.pinv(reach_of(session.robot, session.motion))
+    told = (asked(session) - asked(session)[0]) @ np.linalg.pinv(
+        reach_of(session.robot, session.choices.motion)
+    )
     axes.plot(told[:, 0], told[:, 1], "--", color=INK, lw=1.0, label="asked")
     axes.plot(ways[:, 0], ways[:, 1], color=COP, label="gone")
     axes.plot(*ways[0], "o", color=INK, ms=7, label="start and end")
@@ -211,7 +215,7 @@ def _zero(axes: Any, session: Session) -> None:
 
 def _turns(axes: Any, left: Session, right: Session) -> None:
     for session, color in ((left, FORCE), (right, CMP)):
-        axes.plot(times(session), pelvis_turn(session)[:, _Z], color=color, label=session.motion)
+        axes.plot(times(session), pelvis_turn(session)[:, _Z], color=color, label=session.choices.motion)
         axes.plot(times(session), foretold(session), ":", color=INK, label="by kinematics alone")
     finish(axes, "the body turns nevertheless", "time [s]", "pelvis about z [rad]")
 

@@ -109,9 +109,9 @@ def _contact_checks(run: FinishedRun) -> list[Claim]:
 def _setting(run: FinishedRun) -> str:
     words = (
         run.robot.spec.title,
-        CONTROLLERS[run.controller].title,
-        f"planner {run.planner}",
-        f"priority {run.priority:g} (0 keeps linear momentum, 1 angular)",
+        CONTROLLERS[run.choices.controller].title,
+        f"planner {run.choices.planner}",
+        f"priority {run.choices.priority:g} (0 keeps linear momentum, 1 angular)",
         f"scenario {run.scenario.name}",
         f"seed {run.scenario.seed}",
     )
@@ -160,8 +160,8 @@ def _pushes(run: FinishedRun) -> str:
 def _gains(run: FinishedRun) -> str:
     rows: list[tuple[str, ...]] = [("gain", "value", "default", "what it does")]
     changed = set()
-    for number, (name, gain) in enumerate(declared_gains(run.gains).items()):
-        value = float(getattr(run.gains, name))
+    for number, (name, gain) in enumerate(declared_gains(run.choices.gains).items()):
+        value = float(getattr(run.choices.gains, name))
         if value != gain.default:
             changed.add(number + 1)
         unit = "" if gain.unit == "1" else f" {gain.unit}"

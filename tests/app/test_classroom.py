@@ -90,7 +90,7 @@ def test_hand_tries_on_a_copy_and_the_measured_run_stays(own: Playback, lesson: 
     room.stage.tick(30)
     assert room.news().on_stage == ""
     assert room.stage.run != run
-    assert room.stage.session.gains.linear_damping == 3.0
+    assert room.stage.session.choices.gains.linear_damping == 3.0
     assert room.stage.session.pushes[0].force == 50.0
     room.take(ShowRun("push", 0.3))
     played = room.stage.session
@@ -106,7 +106,7 @@ def test_hand_tries_on_a_copy_and_the_measured_run_stays(own: Playback, lesson: 
     room.take(SetPriority(1.0))
     room.stage.tick(500)
     assert room.stage.session.time > 0.75  # past the end of the run
-    assert room.stage.session.priority == 1.0
+    assert room.stage.session.choices.priority == 1.0
 
 
 def test_instant_of_a_run_that_nobody_has_seen(own: Playback, lesson: OpenLesson) -> None:

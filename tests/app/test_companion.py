@@ -199,7 +199,7 @@ def test_the_same_pushes_come_soon_and_meet_the_choices_of_now():
     playback.take(RunAgain())
     (push,) = playback.session.pushes
     assert push.start == pytest.approx(0.5)
-    assert playback.session.priority == 1.0
+    assert playback.session.choices.priority == 1.0
     assert playback.truth(1.0).first_push is None
     playback.tick(600)
     assert playback.truth(1.0).first_push == push

@@ -140,7 +140,7 @@ def test_running_again_keeps_the_run_before_it():
     desk.playback.take(RunAgain())
     desk.show()
     assert desk.comparison.kept is not None
-    assert (desk.comparison.kept.truth.priority, desk.playback.session.priority) == (0.0, 1.0)
+    assert (desk.comparison.kept.truth.priority, desk.playback.session.choices.priority) == (0.0, 1.0)
     assert len(desk.comparison.kept.story) == 6  # of 100 ms
     desk.panel.run_again()
     assert not desk.panel.wants_kept  # A stays A

@@ -41,13 +41,8 @@ def test_a_run_goes_through_the_pipe(taken):
 def test_what_comes_out_is_the_session(playback, taken):
     run, session = finished(taken), playback.session
     assert np.array_equal(run.recording.rows(), session.recording.rows(), equal_nan=True)
-    assert (run.gains, run.pushes, run.time) == (session.gains, session.pushes, session.time)
-    assert (run.controller, run.planner, run.fall, run.stance) == (
-        session.controller,
-        session.planner,
-        None,
-        session.stance,
-    )
+    assert (run.choices, run.pushes, run.time) == (session.choices, session.pushes, session.time)
+    assert (run.fall, run.stance) == (None, session.stance)
 
 
 def test_a_trace_made_elsewhere(playback, taken):
@@ -60,7 +55,13 @@ def test_a_trace_made_elsewhere(playback, taken):
 def test_every_other_kind(taken):
     assert decoded("r.json", made("run", taken)) == taken.run
     assert made("table", taken).startswith(b"time,q.0,")
+    assert b"__VISER_EMBED_DATA__" in made("recording", taken)
     assert Image.open(io.BytesIO(made("plots", taken))).format == "PNG"
+
+
+def test_a_recording_made_elsewhere_is_the_one_made_here(taken):
+    warm_up()
+    assert made_elsewhere("viser", taken) == made("viser", taken)
 
 
 def test_what_cannot_be_made_is_told():

@@ -64,7 +64,7 @@ def test_a_choice_while_looking_back_holds_for_the_branch():
     playback.take(LookBack(0.03))
     playback.take(SetMismatch("mass_error", 0.1))
     assert playback.truth(1.0).mismatch == Mismatch(mass_error=0.1)
-    assert playback.session.mismatch == EXACT
+    assert playback.session.choices.mismatch == EXACT
     playback.take(Branch())
-    assert playback.session.mismatch == Mismatch(mass_error=0.1)
+    assert playback.session.choices.mismatch == Mismatch(mass_error=0.1)
     assert playback.session.log[-1].event == SetMismatch("mass_error", 0.1)

@@ -125,8 +125,8 @@ def test_both_robots_of_a_run_do_what_was_done():
     mine.tick(500)
     assert mine.truth(1.0).opened.agrees
     assert mine.truth(1.0).beside == run.scenario.beside
-    assert mine.beside.session.gains == theirs.beside.session.gains
-    assert mine.beside.session.gains.linear_damping == 9.0
+    assert mine.beside.session.choices.gains == theirs.beside.session.choices.gains
+    assert mine.beside.session.choices.gains.linear_damping == 9.0
     rows = theirs.beside.session.recording.rows()
     assert np.array_equal(mine.beside.session.recording.rows(), rows, equal_nan=True)
     assert not np.array_equal(mine.session.recording.rows(), rows, equal_nan=True)

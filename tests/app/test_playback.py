@@ -62,12 +62,12 @@ def test_what_waits_for_the_next_tick_counts_as_done(playback):
     playback.take(Pause())
     playback.take(SetPriority(0.4))
     playback.take(SetGain("linear_damping", 12.5))
-    assert playback.session.priority == 0.0
+    assert playback.session.choices.priority == 0.0
     assert truth(playback).priority == 0.4
     assert truth(playback).gains["linear_damping"] == 12.5
     playback.tick(1)
-    assert playback.session.priority == truth(playback).priority == 0.4
-    assert playback.session.gains.linear_damping == truth(playback).gains["linear_damping"] == 12.5
+    assert playback.session.choices.priority == truth(playback).priority == 0.4
+    assert playback.session.choices.gains.linear_damping == truth(playback).gains["linear_damping"] == 12.5
 
 
 @pytest.mark.parametrize(
@@ -220,7 +220,7 @@ def test_a_branch_goes_on_from_there_with_what_was_chosen_meanwhile(fallen):
     assert (now.motion, now.angular_goal) == ("arm-swing", "reference")
     assert [entry.tick for entry in fallen.session.log] == 6 * [50]
     fallen.tick(1)
-    assert fallen.session.controller == "slack-qp"
+    assert fallen.session.choices.controller == "slack-qp"
 
 
 def test_an_unchanged_branch_repeats_what_was(fallen):

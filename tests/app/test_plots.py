@@ -161,3 +161,90 @@ def test_what_is_not_a_number_is_not_at_rest(desk, pushed):
     drawings(desk, rows[:-50])
     rows[-50:, pushed.recording.slices["cop_measured"]] = np.nan
     assert drawings(desk, rows[-50:]) >= 8
+
+
+def test_the_robot_beside_the_first_has_thin_curves_of_the_same_colour(desk, pushed, talos):
+    rows = pushed.recording.rows(20)
+    lines = [handle.series for handle in desk.handles]
+    desk.plots.add(rows[:50])
+    sent = sum(column.nbytes for handle in desk.handles for column in handle.data)
+    leaning = rows.copy()
+    leaning[:, pushed.recording.slices["com"].start] += 0.02
+    desk.plots.add_beside(leaning[:50])
+    desk.plots.draw()
+    places = desk.handles[0]
+    com, its_com = places.data[1][1:-1], places.data[-2][1:-1]
+    # The CoM of the second robot is 2 cm further, seen from the same feet.
+    np.testing.assert_allclose(its_com, com + 2.0, atol=1e-9)
+    for handle, before in zip(desk.handles, lines, strict=True):
+        assert len(handle.series) == len(handle.data)
+        assert handle.series[: len(before)] == before
+        strokes = [line["stroke"] for line in before[1:-1]]
+        for thin in handle.series[len(before) :]:
+            assert thin["stroke"] in strokes
+            assert thin["width"] < before[1]["width"]
+    desk.plots.alone()
+    desk.plots.draw()
+    assert [handle.series for handle in desk.handles] == lines
+    assert (
+        sum(column.nbytes for handle in desk.handles for column in handle.data) == sent
+    )  # one robot costs no more
+
+
+def test_a_robot_beside_one_at_rest_is_drawn_ten_times_a_second(desk, pushed):
+    rows = pushed.recording.rows(20)
+    still = np.repeat(rows[:1], 500, axis=0)
+    still[:, 0] = 0.02 * np.arange(500)
+    moving = still.copy()
+    moving[:, pushed.recording.slices["com"].start] += 0.05 * np.sin(still[:, 0])
+    desk.plots.add(still[:450])
+    desk.plots.add_beside(moving[:450])
+    drawn = 0
+    for i in range(450, 500):
+        desk.now += 0.02
+        before = desk.handles[0].data
+        desk.plots.add_beside(moving[i : i + 1])
+        desk.plots.add(still[i : i + 1])
+        drawn += desk.handles[0].data is not before
+    assert 9 <= drawn <= 11
+
+
+def test_the_curves_of_a_second_robot_end_with_its_fall(desk, pushed):
+    rows = pushed.recording.rows(20)
+    falling = rows.copy()
+    falling[30:, pushed.recording.slices["fallen"]] = 1.0
+    desk.plots.add(rows[:50])
+    desk.plots.add_beside(falling[:50])
+    desk.plots.draw()
+    for handle in desk.handles:
+        curve = handle.data[-1][1:-1]
+        assert np.isfinite(curve[:30]).all()
+        assert np.isnan(curve[30:]).all()
+
+
+def test_lines_never_outnumber_columns(talos, pushed):
+    """A line without data would end the plot in the browser."""
+
+    class Watched(FakeGui):
+        def add_uplot(self, data, series, **kw):
+            handle = super().add_uplot(data, series, **kw)
+            set_it = type(handle).__setattr__
+
+            class Handle(type(handle)):
+                def __setattr__(self, name, value):
+                    set_it(self, name, value)
+                    assert len(self.series) <= len(self.data)
+
+            handle.__class__ = Handle
+            return handle
+
+    plots = Plots(Watched())
+    plots.begin(talos, pushed.recording.layout)
+    rows = pushed.recording.rows(20)
+    plots.add(rows[:20])
+    plots.add_beside(rows[:20])
+    plots.draw()
+    plots.alone()
+    plots.add_beside(rows[:20])
+    plots.begin(talos, pushed.recording.layout)
+    plots.add(rows[:20])

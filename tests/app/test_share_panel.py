@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from types import SimpleNamespace
 
 import pytest
 
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.share_panel import SharePanel, Sharing, file_name, opened_words
-from momentum_lab.app.wire import Opened
+from momentum_lab.app.wire import Opened, RunTaken
 from momentum_lab.events import ApplyPush, Pause, SetPriority
 from momentum_lab.physics.push import Push
 from momentum_lab.run_file import Run, decoded, encoded
@@ -25,15 +26,26 @@ class Desk:
         self.gui, self.told, self.opened, self.sent = FakeGui(), [], [], {}
         self.playback = Playback(Scenario("My run!", robot="g1"))
         self.address = FakeHandle(value="")
+        self.lines, self.stops = [], False
         sharing = Sharing(
             self.playback.taken,
             self.opened.append,
             self.told.append,
             lambda name, content: self.sent.update({name: content}),
             lambda: b"picture",
+            self.film,
             URL,
         )
         self.panel = SharePanel(self.gui, sharing, self.address)
+
+    def film(self, taken: RunTaken, report: Callable[[float], None]) -> bytes:
+        for done in (0.25, 0.5, 1.0):
+            report(done)
+            self.lines.append(self.gui.html[-1].content)
+            if self.stops:
+                assert self.gui.widgets["Stop the film"].visible
+                self.do("Stop the film")
+        return taken.rows[:3]
 
     def do(self, label: str, value: object = True) -> None:
         self.gui.widgets[label].set_by_person(value)
@@ -107,6 +119,29 @@ def test_the_run_file_and_the_picture_are_sent(desk):
     assert list(desk.sent) == ["my-run-g1.json", "my-run-g1-view.png"]
     assert decoded("r.json", desk.sent["my-run-g1.json"]).ticks == 1
     assert not desk.gui.widgets["Download"].disabled
+
+
+def test_a_film_says_how_far_it_is(desk):
+    desk.playback.tick(5)
+    desk.gui.widgets["file"].value = "film (.mp4)"
+    desk.do("Download")
+    assert [re.findall(r"\d+ %", line) for line in desk.lines] == [["25 %"], ["50 %"], ["100 %"]]
+    assert list(desk.sent) == ["my-run-g1.mp4"]
+    assert len(desk.sent["my-run-g1.mp4"]) == 3
+    assert not desk.gui.html[-1].visible
+    assert not desk.gui.widgets["Stop the film"].visible
+
+
+def test_a_film_can_be_stopped_and_taken_again(desk):
+    desk.stops = True
+    desk.gui.widgets["file"].value = "film (.mp4)"
+    desk.do("Download")
+    assert len(desk.lines) == 1
+    assert desk.sent == {}
+    assert desk.told == ["The film was stopped."]
+    desk.stops = False
+    desk.do("Download")
+    assert list(desk.sent) == ["my-run-g1.mp4"]
 
 
 def test_names_of_files_are_harmless():

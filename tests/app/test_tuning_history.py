@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from momentum_lab.app.chosen import Chosen
 from momentum_lab.app.tuning_history import TuningHistory
+from momentum_lab.events import SetGain, SetGains, SetMismatch, SetPriority
+from momentum_lab.physics.mismatch import Mismatch
 
 
 class Clock:
@@ -19,51 +24,73 @@ def clock() -> Clock:
     return Clock()
 
 
-def noted(history: TuningHistory, clock: Clock, *values: dict[str, float], pause: float = 2.0) -> None:
+def chosen(priority: float = 0.0, controller: str = "computed-torque", **gains: float) -> Chosen:
+    values = {"d": 1.0, "k": 1.0, **gains}
+    return Chosen(controller, priority, "all", "momentum", "", "zero", values)
+
+
+def noted(history: TuningHistory, clock: Clock, *values: Chosen, pause: float = 2.0) -> None:
     for value in values:
         clock.now += pause
         history.note(value)
 
 
 def test_back_and_forth(clock):
-    history = TuningHistory({"d": 1.0, "k": 1.0}, clock)
-    noted(history, clock, {"d": 2.0, "k": 1.0}, {"d": 2.0, "k": 3.0})
-    assert history.steps == (2, 0)
-    assert history.back() == {"k": 1.0}
-    assert history.back() == {"d": 1.0}
-    assert history.back() == {}
-    assert history.forth() == {"d": 2.0}
-    assert history.forth() == {"k": 3.0}
-    assert history.forth() == {}
+    history = TuningHistory(chosen(), clock)
+    noted(history, clock, chosen(d=2.0), chosen(d=2.0, k=3.0), chosen(0.5, d=2.0, k=3.0))
+    assert history.steps == (3, 0)
+    assert history.back() == [SetPriority(0.0)]
+    assert history.back() == [SetGain("k", 1.0)]
+    assert history.back() == [SetGain("d", 1.0)]
+    assert history.back() == []
+    assert history.forth() == [SetGain("d", 2.0)]
+    assert history.forth() == [SetGain("k", 3.0)]
+    assert history.forth() == [SetPriority(0.5)]
+    assert history.forth() == []
+
+
+def test_a_preset_is_taken_back_in_one_event(clock):
+    history = TuningHistory(chosen(), clock)
+    noted(history, clock, chosen(d=2.0, k=3.0))
+    assert history.back() == [SetGains({"d": 1.0, "k": 1.0})]
 
 
 def test_a_slider_on_its_way_is_one_step(clock):
-    history = TuningHistory({"d": 1.0}, clock)
-    noted(history, clock, *({"d": 1.0 + 0.1 * i} for i in range(1, 20)), pause=0.05)
+    history = TuningHistory(chosen(), clock)
+    noted(history, clock, *(chosen(d=1.0 + 0.1 * i) for i in range(1, 20)), pause=0.05)
     assert history.steps == (1, 0)
-    assert history.back() == {"d": 1.0}
+    assert history.back() == [SetGain("d", 1.0)]
 
 
-def test_another_gain_or_a_pause_is_another_step(clock):
-    history = TuningHistory({"d": 1.0, "k": 1.0}, clock)
-    noted(history, clock, {"d": 2.0, "k": 1.0}, {"d": 2.0, "k": 2.0}, pause=0.1)
-    noted(history, clock, {"d": 2.0, "k": 3.0}, pause=1.5)
-    assert history.steps == (3, 0)
+def test_another_choice_or_a_pause_is_another_step(clock):
+    history = TuningHistory(chosen(), clock)
+    noted(history, clock, chosen(d=2.0), chosen(d=2.0, k=2.0), chosen(0.5, d=2.0, k=2.0), pause=0.1)
+    noted(history, clock, chosen(0.7, d=2.0, k=2.0), pause=1.5)
+    assert history.steps == (4, 0)
+
+
+def test_model_errors_are_told_apart(clock):
+    history = TuningHistory(chosen(), clock)
+    heavy = replace(chosen(), mismatch=Mismatch(mass_error=0.1))
+    late = replace(chosen(), mismatch=Mismatch(mass_error=0.1, torque_delay_ms=1.0))
+    noted(history, clock, heavy, late, pause=0.1)
+    assert history.back() == [SetMismatch("torque_delay_ms", 0.0)]
+    assert history.back() == [SetMismatch("mass_error", 0.0)]
 
 
 def test_what_is_late_after_a_step_back_is_no_step(clock):
     """Frames that were under way still show the values of before."""
-    history = TuningHistory({"d": 1.0}, clock)
-    noted(history, clock, {"d": 2.0})
+    history = TuningHistory(chosen(), clock)
+    noted(history, clock, chosen(d=2.0))
     history.back()
-    noted(history, clock, {"d": 2.0}, {"d": 2.0}, {"d": 1.0}, pause=0.1)
+    noted(history, clock, chosen(d=2.0), chosen(d=2.0), chosen(), pause=0.1)
     assert history.steps == (0, 1)
 
 
 def test_a_change_after_a_step_back_ends_the_way_forth(clock):
-    history = TuningHistory({"d": 1.0}, clock)
-    noted(history, clock, {"d": 2.0})
+    history = TuningHistory(chosen(), clock)
+    noted(history, clock, chosen(d=2.0))
     history.back()
-    noted(history, clock, {"d": 1.0}, {"d": 5.0})
+    noted(history, clock, chosen(), chosen(d=5.0))
     assert history.steps == (1, 0)
-    assert history.back() == {"d": 1.0}
+    assert history.back() == [SetGain("d", 1.0)]

@@ -1,15 +1,14 @@
-"""Presets, marks, steps and one's own presets, as the widgets do them."""
+"""Presets, marks and one's own presets, as the widgets do them."""
 
 from __future__ import annotations
 
 import msgspec
 import pytest
 
-from momentum_lab.app import tuning_history
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.tuning_panel import TuningPanel
 from momentum_lab.app.wire import Truth
-from momentum_lab.control.presets import preset_named, presets
+from momentum_lab.control.presets import preset_named
 from momentum_lab.events import Event, SetGains
 from momentum_lab.scenario import Scenario
 from tests.app.fakes import FakeGui
@@ -18,8 +17,7 @@ from tests.app.fakes import FakeGui
 class Desk:
     """A panel and a session that does what it is asked for."""
 
-    def __init__(self, clock) -> None:
-        self.clock = clock
+    def __init__(self) -> None:
         self.gui, self.posted, self.told = FakeGui(), [], []
         self.playback = Playback(Scenario("stand", robot="g1"))
         self.panel = TuningPanel(self.gui, self.post, self.told.append, self.truth)
@@ -33,9 +31,8 @@ class Desk:
         self.playback.take(event)
 
     def do(self, label: str, value: object = True) -> None:
-        """Use a widget, and look again a while later."""
+        """Use a widget, and look again."""
         self.gui.widgets[label].set_by_person(value)
-        self.clock.now += 2.0
         self.panel.follow(self.truth)
 
     def shown(self) -> list[str]:
@@ -45,12 +42,8 @@ class Desk:
 
 @pytest.fixture
 def desk(tmp_path, monkeypatch) -> Desk:
-    class Clock:
-        now = 100.0
-
-    monkeypatch.setattr(tuning_history.time, "monotonic", lambda: Clock.now)
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-    return Desk(Clock)
+    return Desk()
 
 
 def test_a_preset_sets_all_its_gains_at_once(desk):
@@ -71,22 +64,6 @@ def test_changes_count_from_the_preset_and_are_marked(desk):
     assert desk.truth.gains["linear_damping"] == 12.0
     assert slider.label == "linear damping (1∕s)"
     assert desk.shown() == []
-
-
-def test_undo_and_redo_go_through_the_inbox(desk):
-    desk.do("preset", "soft")
-    desk.do("friction", 0.3)
-    desk.do("change", "Undo")
-    assert desk.posted[-1] == SetGains({"friction": 0.6})
-    desk.do("change", "Undo")
-    assert desk.truth.gains == presets("computed-torque")["chapter-like"].values("computed-torque")
-    assert desk.gui.widgets["preset"].value == "chapter-like"
-    desk.do("change", "Redo")
-    desk.do("change", "Redo")
-    assert desk.truth.gains["friction"] == 0.3
-    assert desk.truth.gains["linear_stiffness"] == 7.0
-    desk.do("change", "Redo")
-    assert desk.told == ["There is nothing to redo."]
 
 
 def test_damping_ratio_and_frequency_set_the_gains(desk):

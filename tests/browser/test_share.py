@@ -80,7 +80,7 @@ def test_files_and_codes_hold_the_run(served: Served, open_page: Opener, tmp_pat
     assert report.startswith("<!doctype html>")
     assert "apply push" in report
     assert code in report
-    plots = Image.open(io.BytesIO(downloaded(lab, "plots (.png)", tmp_path).read_bytes()))
+    plots = Image.open(io.BytesIO(downloaded(lab, "picture of the plots (.png)", tmp_path).read_bytes()))
     assert plots.size[0] > 600
     view = np.array(Image.open(downloaded(lab, "picture of the view (.png)", tmp_path)))
     assert (view.min(axis=2) < 100).mean() > 0.005  # there is a robot in it

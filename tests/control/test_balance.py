@@ -65,14 +65,14 @@ class TestTheChaptersPush:
         assert 0.05 < saturated.sum() * 1e-3 < 0.8
         soles = session.recording.column("sole_pose")[:, :, 0]
         front = soles.max(axis=1) + session.robot.soles[0].upper[0]
-        border = front - session.gains.safe_border
+        border = front - session.choices.gains.safe_border
         cop = session.recording.column("cop_admissible")[:, 0]
         assert np.abs(cop - border)[saturated].max() < 1 * MM
         times = session.recording.column("time")
         after_push = saturated & (times > PUSH_END + 0.02)
         measured = session.recording.column("cop_measured")[:, 0]
         assert after_push.any()
-        assert np.abs(measured - border)[after_push].max() < session.gains.safe_border + 1 * MM
+        assert np.abs(measured - border)[after_push].max() < session.choices.gains.safe_border + 1 * MM
 
     def test_meanwhile_linear_momentum_is_kept_and_angular_is_not(self, session):
         column, weight = session.recording.column, session.robot.mass * G
@@ -107,7 +107,7 @@ def test_an_unsaturated_com_is_a_spring_and_damper(robot):
     force = SMALL_PUSH[robot.spec.name]
     session = played(robot, one_push(robot, seconds=0.9, force=force))
     assert not is_saturated(session).any()
-    column, gains = session.recording.column, session.gains
+    column, gains = session.recording.column, session.choices.gains
     after = column("time") > PUSH_END + 1e-3
     target = goal(robot, home(robot)).com[0]
     r = column("com")[after, 0] - target
@@ -132,7 +132,7 @@ def test_angular_momentum_decays_with_its_gain(robot):
     assert not is_saturated(session).any()
     k, rate = column("momentum")[:, 4], column("momentum_rate_measured")[:, 4]
     after = column("time") > PUSH_END + 1e-3
-    law = rate + session.gains.angular_damping * k
+    law = rate + session.choices.gains.angular_damping * k
     assert np.abs(law[after]).max() < 0.03 * np.abs(rate[after]).max()
 
 

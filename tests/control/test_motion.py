@@ -165,7 +165,7 @@ def test_a_motion_begins_and_ends_in_mid_run_without_a_jump(robot):
     assert moved[-1] < 0.02
     jumps = np.abs(np.diff(session.recording.column("torque"), axis=0)) / robot.effort_limit
     assert jumps[5:].max() < 0.1
-    assert session.motion == ""
+    assert session.choices.motion == ""
     with pytest.raises(InputError, match=r"^motion: got dance"):
         session.post(SetMotion("dance"))
 

@@ -112,7 +112,7 @@ def test_another_planner_in_mid_run_is_smooth(robot, planner, controller):
         session.tick()
     jumps = np.abs(np.diff(session.recording.column("torque"), axis=0)) / robot.effort_limit
     assert jumps[295:].max() < LIMIT
-    assert session.planner == OWN
+    assert session.choices.planner == OWN
     assert session.fall is None
 
 
@@ -127,4 +127,4 @@ def test_planners_go_with_controllers_that_take_rates(talos):
     with pytest.raises(InputError, match="above slack-qp"):
         session.post(SelectPlanner("cop-and-force"))
     session.tick()
-    assert session.planner == OWN
+    assert session.choices.planner == OWN

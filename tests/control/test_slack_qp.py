@@ -256,7 +256,7 @@ class TestFigure9:
         """Measured by the contact physics, in the sole."""
         column = session.recording.column
         cop = column("foot_cop_measured")[:, 0, 1]
-        border = robot.soles[0].upper[1] - session.gains.safe_border
+        border = robot.soles[0].upper[1] - session.choices.gains.safe_border
         assert np.abs(cop[:400] - border).max() < 0.5 * MM
         assert cop.max() < border + 0.5 * MM
         pinned = np.abs(cop - border) < 0.5 * MM
@@ -311,7 +311,9 @@ def com_slack(session: Session) -> tuple[np.ndarray, np.ndarray]:
     found = []
     for q, v in zip(column("q")[::10], column("v")[::10], strict=True):
         dynamics = session.robot.at(State(q, v))
-        out = controller.compute(dynamics, session._goal.reference(dynamics, LEVEL), session.gains, 0.0, None)
+        out = controller.compute(
+            dynamics, session._goal.reference(dynamics, LEVEL), session.choices.gains, 0.0, None
+        )
         found.append(max(abs(out.slack["com x"]), abs(out.slack["com y"])))
     return column("time")[::10], np.array(found)
 

@@ -43,7 +43,7 @@ def jumps(session: Session) -> np.ndarray:
 @pytest.mark.parametrize(("first", "second"), PAIRS)
 def test_torques_do_not_jump_and_the_robot_stands(robot, first, second):
     session = switched(robot, first, second)
-    assert session.controller == second
+    assert session.choices.controller == second
     assert jumps(session)[SWITCH - 5 :].max() < LARGEST_JUMP
     assert session.fall is None
     assert np.linalg.norm(session.recording.latest["com_velocity"]) < 0.05
@@ -79,7 +79,7 @@ def test_directions_of_momentum_change_without_a_jump(robot, controller, text):
         if tick in (SWITCH, SWITCH + 400):
             session.post(SetDirections(text if tick == SWITCH else "all"))
         session.tick()
-    assert session.controlled == ALL
+    assert session.choices.controlled == ALL
     assert jumps(session)[SWITCH - 5 :].max() < LARGEST_JUMP
     assert session.fall is None
     assert np.linalg.norm(session.recording.latest["com_velocity"]) < 0.05

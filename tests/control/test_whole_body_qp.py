@@ -279,6 +279,6 @@ def test_selected_live_it_takes_over(g1):
         if tick == 250:
             session.post(SelectController("whole-body-qp"))
         session.tick()
-    assert session.controller == "whole-body-qp"
+    assert session.choices.controller == "whole-body-qp"
     assert session.fall is None
     assert session.solver_failures == 0

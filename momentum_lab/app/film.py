@@ -1,0 +1,98 @@
+"""A finished run as a film: the browser tab draws it below the floor, out of sight, while the lab goes on above."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import viser
+
+from momentum_lab.app.encoder import encoder, ffmpeg
+from momentum_lab.app.reel import Reel
+from momentum_lab.app.reel_scene import ReelScene
+from momentum_lab.app.snapshot import render
+from momentum_lab.app.view_panel import ViewSettings
+from momentum_lab.app.world import add_floor
+
+Report = Callable[[float], None]
+
+_STUDIO = "/film"
+# Deep enough that neither of the two floors comes into the other's picture, m.
+_BELOW = np.array([0.0, 0.0, -100.0])
+_LARGEST = (1280, 720)
+
+
+@dataclass(frozen=True, slots=True)
+class _Shot:
+    """From where the film is taken, and its size in pixels; both even, as films want it."""
+
+    position: np.ndarray
+    wxyz: np.ndarray
+    fov: float
+    width: int
+    height: int
+
+    @classmethod
+    def of(cls, camera: viser.CameraHandle) -> _Shot:
+        """What a tab's camera sees now, seen below the floor, and more of it at the sides where docks hide it."""
+        height = min(camera.image_height, _LARGEST[1])
+        width, height = (2 * max(1, round(side / 2)) for side in (_LARGEST[0] / _LARGEST[1] * height, height))
+        return cls(camera.position + _BELOW, camera.wxyz.copy(), camera.fov, width, height)
+
+
+def film(client: viser.ClientHandle, reel: Reel, settings: ViewSettings, report: Report) -> bytes:
+    """The run as the tab would show it from where it looks now, as an .mp4 file in simulated time.
+
+    Args:
+        client: the browser tab that draws the pictures.
+        reel: what to show.
+        settings: which marks, and how.
+        report: told the fraction that is done; whatever it raises ends the film.
+
+    Raises:
+        InputError: there is no ffmpeg, or the browser does not answer.
+    """
+    ffmpeg()
+    shot = _Shot.of(client.camera)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "film.mp4"
+        with (
+            encoder(path, (shot.width, shot.height), 1.0 / reel.step) as write,
+            _studio(client, reel, settings) as scene,
+        ):
+            for i, sample in enumerate(reel.samples):
+                with client.atomic():
+                    scene.draw(sample)
+                write(_taken(client, shot))
+                report((i + 1) / len(reel.rows))
+        return path.read_bytes()
+
+
+@contextmanager
+def _studio(client: viser.ClientHandle, reel: Reel, settings: ViewSettings) -> Iterator[ReelScene]:
+    """The robot of the film on a floor of its own."""
+    node = client.scene.add_frame(_STUDIO, position=_BELOW, show_axes=False)
+    try:
+        add_floor(client, float(reel.ground.floor.origin[2]), _STUDIO)
+        yield ReelScene(client, reel, settings, _STUDIO)
+    finally:
+        node.remove()
+
+
+def _taken(client: viser.ClientHandle, shot: _Shot) -> np.ndarray:
+    """One picture (h, w, 3)."""
+    return render(
+        lambda patience: client.get_render(
+            shot.height,
+            shot.width,
+            wxyz=shot.wxyz,
+            position=shot.position,
+            fov=shot.fov,
+            transport_format="jpeg",
+            timeout=patience,
+        )
+    )
