@@ -31,6 +31,11 @@ ROBOTS = ("talos", "g1")
 STATES_PER_ROBOT = 50
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The only way in which golden pictures change."""
+    parser.addoption("--update-pictures", action="store_true", help="make the golden pictures anew")
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
     """The machine, shared with the tests of the other process; alone for a test that is marked `quiet`."""

@@ -10,17 +10,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from matplotlib.colors import rgb_to_hsv
 from PIL import Image
 from scipy.ndimage import uniform_filter
 
 GOLDEN = Path(__file__).parent / "golden"
 # Half the side of a crop, px; a CoP is 15 px wide in the picture of a whole robot.
-REACH = 20
+REACH = 16
 # The side of the window whose mean is compared, px: about half a CoP.
 WINDOW = 7
-# Hues farther from a mark's than this belong to something else; paler or darker pixels have no hue.
-_HUE, _PALE, _DARK = 0.035, 0.3, 0.2
+# Measured around the marks of a whole robot: 0 for the same instant in another session, up to 31 when everything is
+# half a pixel aside; 69 and more when a mark is missing (the CoP 104), 138 when the CoP is 12 px aside.
+BOUND = 45.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,18 +54,6 @@ def difference(one: np.ndarray, other: np.ndarray) -> float:
     """
     change = one.astype(float) - other.astype(float)
     return float(np.abs(uniform_filter(change, (WINDOW, WINDOW, 1))).max())
-
-
-def coloured(picture: np.ndarray, color: tuple[int, int, int]) -> np.ndarray:
-    """Which pixels have the hue of a colour, however they are lit (h, w).
-
-    Args:
-        picture: red, green and blue, 0 to 255 (h, w, 3).
-        color: the colour, 0 to 255.
-    """
-    hue, saturation, value = np.moveaxis(rgb_to_hsv(picture / 255.0), -1, 0)
-    apart = np.abs(hue - rgb_to_hsv(np.array(color) / 255.0)[0])
-    return (np.minimum(apart, 1.0 - apart) < _HUE) & (saturation > _PALE) & (value > _DARK)
 
 
 def golden(name: str) -> np.ndarray:
