@@ -13,34 +13,32 @@ RUNS = {"push": lab.Run("fig1", {"seconds": 2.0})}
 AFTER = 0.35  # when the push is over, s
 
 
-def after_push(session, values):
-    """The part of an array that belongs to the tenth of a second after the push."""
-    clock = times(session)[: len(values)]
-    return values[(clock > push_end(session)) & (clock < push_end(session) + 0.1)]
+def brake(session):
+    """The ground's mean force forward, in the tenth of a second after the push, N."""
+    late = times(session) - push_end(session)
+    return ground_force(session)[(late > 0.0) & (late < 0.1), 0].mean()
 
 
-def mean_force(runs):
-    return float(after_push(runs["push"], ground_force(runs["push"]))[:, 0].mean())
-
-
-def share_upward(runs):
-    force = ground_force(runs["push"])
-    return 100.0 * float((force[:, 2] > 0.0).mean())
+def speed(session):
+    """Of the CoM at the end, mm/s."""
+    return 1e3 * np.linalg.norm(session.recording.column("com_velocity")[-1])
 
 
 MEASURES = {
-    "push": lab.Measure(lambda runs: runs["push"].pushes[0].force, "N"),
-    "weight": lab.Measure(lambda runs: runs["push"].robot.mass * 9.81, "N"),
-    "carried": lab.Measure(lambda runs: float(ground_force(runs["push"])[0, 2]), "N"),
-    "brake": lab.Measure(mean_force, "N"),
-    "upward": lab.Measure(share_upward, "%"),
-    "speed": lab.Measure(
-        lambda runs: 1e3 * float(np.linalg.norm(runs["push"].recording.column("com_velocity")[-1])), "mm/s"
-    ),
+    "push": lab.of("push", q.push_force, "N"),
+    "weight": lab.of("push", q.weight, "N"),
+    "carried": lab.of("push", lambda s: ground_force(s)[0, 2], "N"),
+    "brake": lab.of("push", brake, "N"),
+    "size": lab.of("push", lambda s: abs(brake(s)), "N"),
+    "upward": lab.of("push", lambda s: 100.0 * (ground_force(s)[:, 2] > 0.0).mean(), "%"),
+    "speed": lab.of("push", speed, "mm/s"),
 }
 
 STEPS = (
-    lab.Prose("The robot weighs {weight}, and standing still the ground carries exactly that: {carried}."),
+    lab.Prose(
+        "The robot weighs {weight}. While it stands still, the ground carries just that: {carried}, straight "
+        "up, the green arrow under its feet."
+    ),
     lab.Choice(
         "A push of {push}, mostly from behind, ends. Just after it, which way does the ground push the feet?",
         (
@@ -50,16 +48,17 @@ STEPS = (
         ),
     ),
     lab.Number(
-        "How large is the horizontal part, along the push (forward counts as positive)?", "brake", -200, 200
+        "How hard does the ground then push along the floor? Forward counts as positive.", "brake", -200, 200
     ),
-    lab.Play("Push, and watch the arrow under the feet lean.", "push", ("push", "push direction")),
+    lab.Play("Watch the arrow under the feet lean.", "push", ("push", "push direction")),
     lab.Compare(
-        "The arrow leans back, {brake} on average. It never pulls: it points up on {upward} of all ticks.",
+        "The arrow leans back: {size} against the motion. It never pulls down: it points up {upward} of the time.",
         ("brake", "upward"),
     ),
     lab.Explain(
-        "The sum of the forces is the rate of linear momentum (Eq. 2). Here is the motion of all links on the "
-        "left, the ground on the right: nothing else is left to stop the robot.",
+        "The CoM is the centre of mass. Mass times its speed is the linear momentum. A dot over a letter says "
+        "how fast it changes, and linear momentum changes by the force of the ground (Eq. 2). Left: the motion "
+        "of all parts. Right: the ground. They agree, so nothing else stops the robot.",
         "push",
         AFTER,
         lab.Equation(
@@ -72,8 +71,9 @@ STEPS = (
         ),
     ),
     lab.Explain(
-        "Where the ground pushes matters too. About the CoM its force has a lever, and that turns the body: the "
-        "rate of angular momentum (Eq. 1).",
+        "Where the ground pushes matters too. A force that does not point at the CoM has a lever and turns the "
+        "body. How much the body turns about its CoM is its angular momentum; lever times force is how fast "
+        "that changes (Eq. 1).",
         "push",
         AFTER,
         lab.Equation(
@@ -93,7 +93,7 @@ STEPS = (
         ),
     ),
     lab.Prose(
-        "Six numbers of the ground, six rates of momentum: whoever balances, bargains with the ground."
+        "So the ground stops the CoM and turns the body, both with the same force. Who balances bargains with it."
     ),
 )
 

@@ -13,7 +13,7 @@ RUNS = {"push": lab.Run("fig4")}
 
 
 def gap(session):
-    """CMP minus CoP, forward, mm."""
+    """CMP minus CoP, forward (n,), mm."""
     column = session.recording.column
     return 1e3 * (column("cmp") - column("cop_measured"))[:, 0]
 
@@ -22,36 +22,25 @@ def after(session):
     return times(session) > push_end(session)
 
 
-def farthest(session):
-    """The tick after the push at which both points are farthest apart."""
-    return int(np.where(after(session), np.abs(gap(session)), 0.0).argmax())
-
-
-def beyond_toes(runs, name):
+def beyond_toes(session, name):
     """How far a point goes beyond the front edge of the feet after the push, mm."""
-    session = runs["push"]
-    toes = session.recording.column("sole_pose")[0, :, 0].mean() + session.robot.soles[0].upper[0]
     points = session.recording.column(name)[after(session), 0]
-    return 1e3 * float(np.percentile(points, 99.5) - toes)
-
-
-def quiet_gap(runs):
-    session = runs["push"]
-    return float(np.abs(gap(session)[times(session) < push_start(session)]).max())
+    return 1e3 * (np.percentile(points, 99.5) - q.toes(session))
 
 
 MEASURES = {
-    "push": lab.Measure(lambda runs: runs["push"].pushes[0].force, "N"),
-    "quiet": lab.Measure(quiet_gap, "mm", ".2f"),
-    "gap": lab.Measure(lambda runs: float(np.abs(gap(runs["push"]))[farthest(runs["push"])]), "mm"),
-    "cop": lab.Measure(lambda runs: beyond_toes(runs, "cop_measured"), "mm"),
-    "cmp": lab.Measure(lambda runs: beyond_toes(runs, "cmp"), "mm"),
+    "push": lab.of("push", q.push_force, "N"),
+    "quiet": lab.of("push", lambda s: np.abs(gap(s)[times(s) < push_start(s)]).max(), "mm", ".2f"),
+    "gap": lab.of("push", lambda s: np.abs(gap(s)[after(s)]).max(), "mm"),
+    "cop": lab.of("push", lambda s: beyond_toes(s, "cop_measured"), "mm"),
+    "inside": lab.of("push", lambda s: -beyond_toes(s, "cop_measured"), "mm", ".1f"),
+    "cmp": lab.of("push", lambda s: beyond_toes(s, "cmp"), "mm"),
 }
 
 STEPS = (
     lab.Prose(
-        "Two points on the floor. The CoP is where the ground's force acts. The CMP is where it would have to act "
-        "to point at the CoM. In quiet standing they are {quiet} apart: one point."
+        "Two points on the floor. The CoP, the centre of pressure, is where the ground's force acts. The CMP "
+        "is where it would have to act to point at the CoM. Standing still, they are {quiet} apart: one point."
     ),
     lab.Choice(
         "After a push of {push} from behind, which of the two can be found in front of the toes?",
@@ -63,17 +52,14 @@ STEPS = (
         ),
     ),
     lab.Number("How far apart are they at most?", "gap", 0, 200),
-    lab.Play(
-        "Look at the bar between both points, and at the body, push by push.", "push", ("push", "push height")
-    ),
+    lab.Play("Watch the bar between the two points, and the trunk.", "push", ("push", "push height")),
     lab.Compare(
-        "The CMP went {cmp} beyond the toes. The CoP stayed within its border (a minus is inside): {cop}. "
-        "The gap grew to {gap}.",
+        "The CMP went {cmp} beyond the toes. The CoP stopped {inside} inside. The gap grew to {gap}.",
         ("cop", "cmp", "gap"),
     ),
     lab.Explain(
-        "A force that passes by the CoM turns the body. The gap is the lever: times the vertical force it is the "
-        "rate of angular momentum (Eq. 23).",
+        "A force that passes by the CoM turns the body. The gap is its lever: times the vertical force, it is "
+        "how fast the angular momentum changes (Eq. 23).",
         "push",
         0.35,
         lab.Equation(
@@ -86,7 +72,8 @@ STEPS = (
         ),
     ),
     lab.Prose(
-        "So a robot has a way past its toes: it pays with rotation. The bar on the screen is the price."
+        "The farther ahead the CMP, the harder the CoM is pushed back. A robot can send it past the toes, and "
+        "pays by turning. The bar on the screen is the price."
     ),
 )
 

@@ -32,49 +32,39 @@ def way(session):
     return 1e3 * com_moved(session)[:, 0]
 
 
-def back(runs, label):
+def back(session):
     """How long after the push the CoM is back for good, within a tenth of its farthest, s."""
-    moved = np.abs(way(runs[label]))
-    last = np.flatnonzero(moved > 0.1 * moved.max())[-1]
-    return float(times(runs[label])[last]) - push_end(runs[label])
+    moved = np.abs(way(session))
+    return times(session)[np.flatnonzero(moved > 0.1 * moved.max())[-1]] - push_end(session)
 
 
-def overshoot(runs, label):
+def overshoot(session):
     """How far it swings to the other side, as part of its farthest, %."""
-    moved = way(runs[label])
-    return 100.0 * float(max(0.0, -moved.min()) / moved.max())
-
-
-def lead(runs):
-    """How much earlier the one in the middle is back than both others, s."""
-    return min(back(runs, "loose"), back(runs, "tight")) - back(runs, "even")
-
-
-def outside(runs):
-    return float(sum(saturated(session).sum() for session in runs.values()))
+    moved = way(session)
+    return 100.0 * max(0.0, -moved.min()) / moved.max()
 
 
 MEASURES = {
-    "push": lab.Measure(lambda runs: runs["even"].pushes[0].force, "N"),
-    "way": lab.Measure(lambda runs: float(way(runs["even"]).max()), "mm", ".1f"),
-    "outside": lab.Measure(outside, "ticks"),
-    "loose": lab.Measure(lambda runs: back(runs, "loose"), "s", ".2f"),
-    "even": lab.Measure(lambda runs: back(runs, "even"), "s", ".2f"),
-    "tight": lab.Measure(lambda runs: back(runs, "tight"), "s", ".2f"),
-    "lead": lab.Measure(lead, "s", ".2f"),
-    "swing": lab.Measure(lambda runs: overshoot(runs, "loose"), "%"),
-    "no_swing": lab.Measure(lambda runs: overshoot(runs, "even"), "%", ".1f"),
+    "push": lab.of("even", q.push_force, "N"),
+    "way": lab.of("even", lambda s: way(s).max(), "mm", ".1f"),
+    "outside": lab.Measure(lambda runs: sum(saturated(run).sum() for run in runs.values()), "ticks"),
+    "loose": lab.of("loose", back, "s", ".2f"),
+    "even": lab.of("even", back, "s", ".2f"),
+    "tight": lab.of("tight", back, "s", ".2f"),
+    "lead": lab.Measure(lambda runs: min(back(runs["loose"]), back(runs["tight"])) - back(runs["even"]), "s"),
+    "swing": lab.of("loose", overshoot, "%"),
+    "no_swing": lab.of("even", overshoot, "%", ".1f"),
     "ratios": lab.Measure(lambda runs: "{:.1f}, {:.1f} and {:.1f}".format(*map(ratio, runs.values()))),
 }
 
 STEPS = (
     lab.Prose(
-        "A push of {push} moves the CoM by only {way}. The ground can give all that is wanted: the desired CoP was "
-        "outside on {outside}. Then balance is a spring, Gamma_22, and a damper, Gamma_21."
+        "A push of {push} moves the CoM by only {way}: a CoP within the feet can undo it. The controller makes "
+        "the robot a spring that pulls the CoM back, and a damper that brakes it."
     ),
     lab.Choice(
-        "Three robots have the same spring and brake with damping ratios of {ratios}. "
-        "Which one is back first, for good?",
+        "Three robots have the same spring. They brake little, more, and most: damping ratios of {ratios}. "
+        "Whose CoM is back first, for good?",
         (
             lab.Option(
                 "The loose one: nothing holds it up", lambda m: m["loose"] < min(m["even"], m["tight"])
@@ -83,20 +73,21 @@ STEPS = (
             lab.Option("The one that brakes hardest", lambda m: m["tight"] < min(m["loose"], m["even"])),
         ),
     ),
-    lab.Number("How far does the loose one swing past its place, in % of its farthest?", "swing", 0, 100),
+    lab.Number("How far does the loose one swing past its place, as part of its farthest?", "swing", 0, 100),
     lab.Play(
-        "Push, change both gains, push again. Watch the CoM in the plot.",
+        "The motion is small: watch the CoM in the plot.",
         "loose",
         ("push", "linear_damping", "linear_stiffness"),
+        beside="even",
     ),
     lab.Compare(
         "Back for good after {loose}, {even} and {tight}. The loose one swings past by {swing}, the one in the "
-        "middle by {no_swing}.",
+        "middle by {no_swing}; the one that brakes hardest creeps.",
         ("loose", "even", "tight", "swing"),
     ),
     lab.Explain(
-        "The robot really is that spring: its CoM, one point of a body with dozens of joints, obeys Eq. 38. "
-        "The damping ratio is Gamma_21 over twice the root of Gamma_22.",
+        "The CoM of a body with dozens of joints really moves like one spring, Gamma_22, with one damper, "
+        "Gamma_21 (Eq. 38). The damping ratio is Gamma_21 over twice the root of Gamma_22.",
         "loose",
         0.5,
         lab.Equation(
@@ -105,8 +96,8 @@ STEPS = (
                 "ddr_x": lab.Symbol(
                     lambda s: q.FORCE_X.values(s) / s.robot.mass, "m/s^2", "by the forces", ".3f"
                 ),
-                "Gamma_22": lab.Symbol(lambda s: s.gains.linear_stiffness, "1/s^2", "spring"),
-                "Gamma_21": lab.Symbol(lambda s: s.gains.linear_damping, "1/s", "damper", ".1f"),
+                "Gamma_22": lab.Symbol(lambda s: s.choices.gains.linear_stiffness, "1/s^2", "spring"),
+                "Gamma_21": lab.Symbol(lambda s: s.choices.gains.linear_damping, "1/s", "damper", ".1f"),
                 "r_d": lab.Symbol(lambda s: q.COM_X.values(s)[0], "m", "its place", ".4f"),
                 "r_x": q.COM_X,
                 "dr_x": q.COM_SPEED_X,
@@ -121,7 +112,7 @@ STEPS = (
 
 CLAIMS = (
     *(lab.Stands(label, f"the {label} robot") for label in RUNS),
-    lab.Bound("everything is admissible", "outside", high=0.0),
+    lab.Bound("the feet can give all that is wanted", "outside", high=0.0),
     # A spring with a damper, kicked from rest, swings back by exp(-pi zeta / sqrt(1 - zeta^2)).
     lab.Bound("the loose one swings back as far as a spring and damper do", "swing", low=49.7, high=55.7),
     lab.Bound("the one in the middle is back first", "lead", low=0.5),

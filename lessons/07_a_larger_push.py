@@ -6,7 +6,7 @@ Balance asks for a CoP in front of the toes, where there is no foot. Something h
 import numpy as np
 
 import momentum_lab.lesson as lab
-from momentum_lab.experiments.measured import com_moved, rate_gap, saturated, times, upright
+from momentum_lab.experiments.measured import com_moved, rate_gap, times, upright
 from momentum_lab.lesson import quantities as q
 
 RUNS = {
@@ -16,51 +16,40 @@ RUNS = {
 EARLY = 0.2  # of the time after the push began: before anything is decided, s
 
 
-def asked_beyond(runs):
+def asked_beyond(session):
     """How far in front of what the ground can give the desired CoP is, mm."""
-    column = runs["bend"].recording.column
-    return 1e3 * float((column("cop_desired") - column("cop_admissible"))[:, 0].max())
+    column = session.recording.column
+    return 1e3 * (column("cop_desired") - column("cop_admissible"))[:, 0].max()
 
 
-def missing(runs, label, row):
-    """How much of a desired momentum rate is given up early on, N or N m."""
-    session = runs[label]
-    early = times(session) < session.pushes[0].start + EARLY
-    return float(np.abs(rate_gap(session)[early, row]).max())
+def missing(row):
+    """How much of a desired momentum rate a robot gives up early on, N or N m."""
+    return lambda s: np.abs(rate_gap(s)[times(s) < s.pushes[0].start + EARLY, row]).max()
 
 
-def way(runs, label):
-    session = runs[label]
-    return 1e3 * float(com_moved(session)[upright(session), 0].max())
-
-
-def fate(runs, label):
-    fall = runs[label].fall
-    return "stands" if fall is None else f"falls after {fall.time:.1f} s"
-
-
-def first_outside(session):
-    return float(times(session)[saturated(session).argmax()])
+def way(session):
+    """How far the CoM goes before a fall, mm."""
+    return 1e3 * com_moved(session)[upright(session), 0].max()
 
 
 MEASURES = {
-    "push": lab.Measure(lambda runs: runs["bend"].pushes[0].force, "N"),
-    "asked": lab.Measure(asked_beyond, "mm"),
-    "bend": lab.Measure(lambda runs: fate(runs, "bend")),
-    "upright": lab.Measure(lambda runs: fate(runs, "upright")),
-    "bend_turns": lab.Measure(lambda runs: missing(runs, "bend", 4), "N m"),
-    "bend_brakes": lab.Measure(lambda runs: missing(runs, "bend", 0), "N", ".1f"),
-    "upright_turns": lab.Measure(lambda runs: missing(runs, "upright", 4), "N m", ".1f"),
-    "upright_brakes": lab.Measure(lambda runs: missing(runs, "upright", 0), "N"),
-    "bend_way": lab.Measure(lambda runs: way(runs, "bend"), "mm"),
-    "upright_way": lab.Measure(lambda runs: way(runs, "upright"), "mm"),
+    "push": lab.of("bend", q.push_force, "N"),
+    "asked": lab.of("bend", asked_beyond, "mm"),
+    "bend": lab.fate("bend"),
+    "upright": lab.fate("upright"),
+    "bend_turns": lab.of("bend", missing(4), "N m"),
+    "bend_brakes": lab.of("bend", missing(0), "N", ".1f"),
+    "upright_turns": lab.of("upright", missing(4), "N m", ".1f"),
+    "upright_brakes": lab.of("upright", missing(0), "N"),
+    "bend_way": lab.of("bend", way, "mm"),
+    "upright_way": lab.of("upright", way, "mm"),
 }
 
 STEPS = (
     lab.Prose(
-        "A push of {push} from behind. To brake as it wants, the robot needs a CoP {asked} in front of where the "
-        "feet end. The CoP stops there. Two robots choose differently. One keeps braking its CoM, and lets the "
-        "body bend forward. The other keeps its body from turning, and brakes less."
+        "Two robots get a push of {push} from behind. To brake as they want, they would need a CoP {asked} in "
+        "front of where the feet end. It cannot go there. One robot keeps braking its CoM, and lets its body "
+        "bend forward. The other keeps its body from turning, and brakes less."
     ),
     lab.Choice(
         "Same push, same feet. Who is standing in the end?",
@@ -71,16 +60,21 @@ STEPS = (
             lab.Option("Neither", lambda m: "stands" not in (m["bend"], m["upright"])),
         ),
     ),
-    lab.Play("Push both. Then move the priority.", "bend", ("push", "priority"), beside="upright"),
+    lab.Play(
+        "Watch the trunks, then the feet. The priority you can move is that of the first robot.",
+        "bend",
+        ("push", "priority"),
+        beside="upright",
+    ),
     lab.Compare(
         "The robot that bends {bend}; the one that stays upright {upright}. Their CoMs went {bend_way} and "
         "{upright_way}.",
         ("bend", "upright", "bend_way", "upright_way"),
     ),
     lab.Explain(
-        "Eq. 21 ties the CoP to both momentum rates. With the CoP stuck, one rate fixes the other. The robot that "
-        "bends gave up {bend_turns} of turning and {bend_brakes} of braking; the other {upright_turns} and "
-        "{upright_brakes}. Where the CoM goes decides about the fall, and only braking stops the CoM.",
+        "The CoP holds braking and turning together (Eq. 21): with the CoP stuck at the toes, more of one is "
+        "less of the other. Who bends gave up {bend_turns} of its turning goal and {bend_brakes} of braking; "
+        "who stays upright {upright_turns} and {upright_brakes}. Only braking stops the CoM.",
         "bend",
         0.3,
         lab.Equation(
@@ -98,7 +92,11 @@ STEPS = (
             share=0.99,
         ),
     ),
-    lab.Prose("Priority 0 bends, priority 1 stays upright, and between them is every mixture."),
+    lab.Prose(
+        "So that is why the trunk rotates: the feet end, and turning is what lets the ground push the CoM back "
+        "harder than the toes alone allow. Priority 0 bends, priority 1 stays upright; between them is every "
+        "mixture."
+    ),
 )
 
 CLAIMS = (

@@ -1,6 +1,6 @@
 """The chapter's push
 
-A push that a textbook robot survived, scaled to yours: how long does it ask for more than its feet can give?
+A robot in a textbook was pushed, and stood by turning its body. The same push, scaled to yours: which way?
 """
 
 import numpy as np
@@ -12,68 +12,64 @@ from momentum_lab.lesson import quantities as q
 RUNS = {"push": lab.Run("fig8")}
 
 
-def time_outside(session):
-    """How long the desired CoP lies beyond the feet, s."""
-    return float(saturated(session).sum()) * session.scenario.timestep
+def outside(session):
+    """How long the desired CoP lies beyond the feet, ms."""
+    return 1e3 * saturated(session).sum() * session.scenario.timestep
 
 
-def kept_braking(runs):
-    """The largest part of the desired braking that was given up, N."""
-    return float(np.abs(rate_gap(runs["push"])[:, :2]).max())
-
-
-def spin(runs):
+def spin(session):
     """Angular momentum about y after the push where it is largest, with its sign, N m s."""
-    session = runs["push"]
     values = session.recording.column("momentum")[times(session) > push_end(session), 4]
-    return float(values[np.abs(values).argmax()])
+    return values[np.abs(values).argmax()]
 
 
-def quiet(runs):
-    """Ticks outside before the push and in the last half second."""
-    session = runs["push"]
+def quiet(session):
+    """The same before the push and in the last half second, ms."""
     clock = times(session)
     still = (clock < session.pushes[0].start) | (clock > session.scenario.seconds - 0.5)
-    return float(saturated(session)[still].sum())
+    return 1e3 * saturated(session)[still].sum() * session.scenario.timestep
 
 
 MEASURES = {
-    "push": lab.Measure(lambda runs: runs["push"].pushes[0].force, "N"),
-    "lasts": lab.Measure(lambda runs: 1e3 * runs["push"].pushes[0].duration, "ms"),
-    "mass": lab.Measure(lambda runs: runs["push"].robot.mass, "kg", ".1f"),
-    "kick": lab.Measure(lambda runs: runs["push"].pushes[0].impulse / runs["push"].robot.mass, "m/s", ".2f"),
-    "outside": lab.Measure(lambda runs: 1e3 * time_outside(runs["push"]), "ms"),
-    "quiet": lab.Measure(quiet, "ticks"),
-    "braking": lab.Measure(kept_braking, "N", ".2f"),
-    "turning": lab.Measure(lambda runs: float(np.abs(rate_gap(runs["push"])[:, 4]).max()), "N m", ".1f"),
-    "spin": lab.Measure(spin, "N m s", ".2f"),
-    "way": lab.Measure(lambda runs: 1e3 * float(com_moved(runs["push"])[:, 0].max()), "mm"),
+    "push": lab.of("push", q.push_force, "N"),
+    "lasts": lab.of("push", lambda s: 1e3 * s.pushes[0].duration, "ms"),
+    "mass": lab.of("push", lambda s: s.robot.mass, "kg", ".1f"),
+    "speed": lab.of("push", lambda s: s.pushes[0].impulse / s.robot.mass, "m/s", ".2f"),
+    "outside": lab.of("push", outside, "ms"),
+    "quiet": lab.of("push", quiet, "ms"),
+    "braking": lab.of("push", lambda s: np.abs(rate_gap(s)[:, :2]).max(), "N", ".2f"),
+    "turning": lab.of("push", lambda s: np.abs(rate_gap(s)[:, 4]).max(), "N m", ".1f"),
+    "spin": lab.of("push", spin, "N m s", ".2f"),
+    "way": lab.of("push", lambda s: 1e3 * com_moved(s)[:, 0].max(), "mm"),
 }
 
 STEPS = (
     lab.Prose(
-        "The chapter's robot is another one, so its push is scaled: {push} for {lasts} on {mass}, which gives the "
-        "CoM {kick}, whatever the mass."
+        "The chapter pushes a robot of its own. Yours weighs {mass}; to give its CoM the same {speed} within "
+        "{lasts}, the push is {push}."
     ),
-    lab.Number("For how long in all does the robot want a CoP beyond its feet?", "outside", 0, 1000),
     lab.Choice(
-        "Meanwhile, which way does the body turn?",
+        "The push comes from behind. Which way does the body turn while the robot brakes?",
         (
-            lab.Option("It bends forward, with the push", lambda m: m["spin"] > 0.0),
-            lab.Option("It leans back, against the push", lambda m: m["spin"] < 0.0),
+            lab.Option("It leans back, against the push", lambda m: m["spin"] < -0.1),
+            lab.Option("Hardly at all", lambda m: abs(m["spin"]) <= 0.1),
+            lab.Option("It bends forward, with the push", lambda m: m["spin"] > 0.1),
         ),
     ),
+    lab.Number("For how long in all does the robot want a CoP beyond its feet?", "outside", 0, 1000),
     lab.Play(
-        "Push, pause, step. Compare the desired CoP with the one that is granted.", "push", ("push", "robot")
+        "Slow it down. The hollow square is the CoP that it wants, the diamond the one it has. Then the other robot.",
+        "push",
+        ("push", "robot"),
     ),
     lab.Compare(
-        "For {outside} it asked for too much; before the push and at the end on {quiet}. The CoM moved {way} and "
-        "came back.",
+        "It bent forward. For {outside} it wanted more than its feet have; before the push and at the end for "
+        "{quiet}. The CoM moved {way} and came back.",
         ("outside", "way", "spin"),
     ),
     lab.Explain(
-        "What the feet cannot give becomes rotation. Braking was kept to within {braking}; turning gave way by "
-        "{turning}: exactly the missing part of the CoP times the force.",
+        "What the feet cannot give becomes turning. Braking was kept to within {braking}. Turning gave way by "
+        "up to {turning}: the part of the CoP that is missing, times the force.",
         "push",
         0.3,
         lab.Equation(

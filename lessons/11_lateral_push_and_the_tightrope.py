@@ -19,46 +19,33 @@ def early(session, values):
     return values[(clock > push_start(session)) & (clock < push_start(session) + 0.6)]
 
 
-def inside(session):
-    """How far the CoP stays inside the outer edge of the foot, mm."""
-    return 1e3 * float(edge(session) - q.COP_Y.values(session).max())
-
-
 def roll(session):
     """Largest early roll of the pelvis, degrees; to the left counts as positive."""
     turned = -np.degrees(early(session, pelvis_turn(session)[:, 0]))
-    return float(turned[np.abs(turned).argmax()])
+    return turned[np.abs(turned).argmax()]
 
 
 def left(session):
-    """The part of the largest spin that is there at the end, %."""
+    """The part of the largest angular momentum that is there at the end, %."""
     spin = np.abs(session.recording.column("momentum")[:, 3])
-    return 100.0 * float(spin[-1] / spin.max())
+    return 100.0 * spin[-1] / spin.max()
 
 
 MEASURES = {
-    "push": lab.Measure(lambda runs: runs["push"].pushes[0].force, "N"),
-    "cmp": lab.Measure(
-        lambda runs: 1e3 * float(q.CMP_Y.values(runs["push"]).max() - edge(runs["push"])), "mm"
-    ),
-    "cop": lab.Measure(lambda runs: inside(runs["push"]), "mm", ".1f"),
-    "roll": lab.Measure(lambda runs: roll(runs["push"]), "degrees", ".1f"),
-    "spin": lab.Measure(
-        lambda runs: -float(runs["push"].recording.column("momentum")[:, 3].min()), "N m s", ".2f"
-    ),
-    "left": lab.Measure(lambda runs: left(runs["push"]), "%"),
-    "foot": lab.Measure(
-        lambda runs: 1e3 * float(np.linalg.norm(swing_foot(runs["push"]), axis=1).max()), "mm"
-    ),
-    "foot_up": lab.Measure(lambda runs: 1e3 * float(swing_foot(runs["push"])[:, 1].max()), "mm"),
-    "end": lab.Measure(
-        lambda runs: 1e3 * float(np.linalg.norm(com_outside_goal(runs["push"])[-1])), "mm", ".1f"
-    ),
+    "push": lab.of("push", q.push_force, "N"),
+    "cmp": lab.of("push", lambda s: 1e3 * (q.CMP_Y.values(s).max() - edge(s)), "mm"),
+    "cop": lab.of("push", lambda s: 1e3 * (edge(s) - q.COP_Y.values(s).max()), "mm", ".1f"),
+    "roll": lab.of("push", roll, "degrees", ".1f"),
+    "spin": lab.of("push", lambda s: -s.recording.column("momentum")[:, 3].min(), "N m s", ".2f"),
+    "left": lab.of("push", left, "%"),
+    "foot": lab.of("push", lambda s: 1e3 * np.linalg.norm(swing_foot(s), axis=1).max(), "mm"),
+    "foot_up": lab.of("push", lambda s: 1e3 * swing_foot(s)[:, 1].max(), "mm"),
+    "end": lab.of("push", lambda s: 1e3 * np.linalg.norm(com_outside_goal(s)[-1]), "mm", ".1f"),
 }
 
 STEPS = (
     lab.Prose(
-        "The robot stands on its left leg, on a foot, not a rope, but narrow. A push of {push} comes from the right."
+        "The robot stands on its left leg: no rope, but a narrow foot. A push of {push} comes from the right."
     ),
     lab.Choice(
         "Which way does its body roll at first?",
@@ -69,16 +56,16 @@ STEPS = (
         ),
     ),
     lab.Number("How far does the free foot swing?", "foot", 0, 500),
-    lab.Play("Push from either side. Look at the free leg.", "push", ("push", "push direction")),
+    lab.Play("Look from the front. Then push from either side.", "push", ("push", "push direction")),
     lab.Compare(
-        "The body rolled by {roll} with the push. The free foot swung by {foot}, {foot_up} of it upward: outward and "
-        "up, as on a tightrope.",
+        "The body rolled by {roll} with the push. The free foot swung by {foot}, {foot_up} of it upward: out "
+        "and up, as on a tightrope.",
         ("roll", "foot", "foot_up"),
     ),
     lab.Explain(
-        "To stop the CoM, the ground has to push to the right, harder than its place under the foot allows. So the "
-        "CMP goes {cmp} beyond the edge, while the CoP stays {cop} inside. The gap turns body and leg to the left "
-        "(Eq. 23): they take a spin of {spin}, of which {left} are left in the end. The CoM ends {end} from its "
+        "To stop the CoM, the ground must push to the right, harder than a force through the CoM could. So the "
+        "CMP goes {cmp} beyond the edge, the CoP stays {cop} inside, and the gap turns body and leg to the "
+        "left (Eq. 23). They take up {spin} and give it back: {left} is left, and the CoM ends {end} from its "
         "place.",
         "push",
         0.35,

@@ -5,9 +5,19 @@ from __future__ import annotations
 import msgspec
 
 from momentum_lab.errors import InputError
-from momentum_lab.events import ApplyPush, ApplyPushes, MoveGround, SessionEvent, SetFriction, StopGround
+from momentum_lab.events import (
+    ApplyPush,
+    ApplyPushes,
+    HoldPush,
+    LetGo,
+    MoveGround,
+    SessionEvent,
+    SetFriction,
+    StopGround,
+)
 from momentum_lab.physics.ground import Ground, checked_friction
-from momentum_lab.physics.push import Push
+from momentum_lab.physics.held_push import Pushed
+from momentum_lab.physics.push import Push, pushed_frame
 from momentum_lab.robot.model import RobotModel
 
 
@@ -28,9 +38,7 @@ def ground_after(ground: Ground, event: SessionEvent, robot: RobotModel, time: f
     return ground
 
 
-def pushes_after(
-    pushes: tuple[Push, ...], event: SessionEvent, robot: RobotModel, time: float
-) -> tuple[Push, ...]:
+def pushed_after(pushed: Pushed, event: SessionEvent, robot: RobotModel, time: float) -> Pushed:
     """All pushes after an event at a time of the run, s; the same ones if it is about something else.
 
     Raises:
@@ -38,10 +46,15 @@ def pushes_after(
     """
     match event:
         case ApplyPush(push):
-            return (*pushes, _begun(sized(push, robot), time, 0.0))
+            return pushed.with_push(_begun(sized(push, robot), time, 0.0))
         case ApplyPushes(later):
-            return (*pushes, *(_begun(sized(push, robot), time, push.start) for push in later))
-    return pushes
+            for push in later:
+                pushed = pushed.with_push(_begun(sized(push, robot), time, push.start))
+        case HoldPush(push):
+            return pushed.held_from(time, sized(push, robot))
+        case LetGo():
+            return pushed.let_go(time)
+    return pushed
 
 
 def sized(push: Push, robot: RobotModel) -> Push:
@@ -50,8 +63,7 @@ def sized(push: Push, robot: RobotModel) -> Push:
     Raises:
         InputError: it has none, or the force is out of range.
     """
-    if push.body is not None and push.body not in robot.spec.push_bodies:
-        raise InputError("body", push.body, f"one of {', '.join(robot.spec.push_bodies)}")
+    pushed_frame(robot, push)
     return push.sized_for(robot.mass)
 
 

@@ -110,6 +110,20 @@ class ApplyPushes(msgspec.Struct, frozen=True, tag=True):
     pushes: tuple[Push, ...]
 
 
+class HoldPush(msgspec.Struct, frozen=True, tag=True):
+    """Push the robot from now until the next `HoldPush` or `LetGo`, for ten seconds at most.
+
+    The push's own start, duration and shape are ignored: its force is constant, and a hand that moves is a chain
+    of such pushes, each of which ends at the tick at which the next begins.
+    """
+
+    push: Push
+
+
+class LetGo(msgspec.Struct, frozen=True, tag=True):
+    """End the push that is held now, if there is one."""
+
+
 class Reset(msgspec.Struct, frozen=True, tag=True):
     """Stand the robot up again where it started and set the clock to zero.
 
@@ -191,6 +205,8 @@ SessionEvent = (
     | SelectController
     | ApplyPush
     | ApplyPushes
+    | HoldPush
+    | LetGo
     | Reset
 )
 PlaybackEvent = (

@@ -18,7 +18,7 @@ from momentum_lab.control.handover import Handover
 from momentum_lab.control.motion import MovingGoal
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.control.standing import StandingGoal
-from momentum_lab.effects import ground_after, pushes_after, sized
+from momentum_lab.effects import ground_after, pushed_after, sized
 from momentum_lab.errors import SimulationError
 from momentum_lab.events import (
     LoggedEvent,
@@ -41,6 +41,7 @@ from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.observe import Tick, observe
 from momentum_lab.physics.engines import check_ground, check_mismatch, world
 from momentum_lab.physics.ground import Ground
+from momentum_lab.physics.held_push import Pushed
 from momentum_lab.physics.mismatch import EXACT, real_robot
 from momentum_lab.physics.motors import Line, delayed, ticks_late
 from momentum_lab.physics.push import Push
@@ -85,7 +86,7 @@ class Session:
     # What changes while the session runs, and a snapshot holds; everything else is decided when it begins.
     state: State
     choices: Choices
-    pushes: tuple[Push, ...]
+    _pushed: Pushed
     fall: Fall | None
     solver_failures: int
     last_failure: str | None
@@ -147,6 +148,11 @@ class Session:
         return self._ground
 
     @property
+    def pushes(self) -> tuple[Push, ...]:
+        """All pushes since the robot stood up, sized; one that is held has lasted until now."""
+        return self._pushed.until(self.time, self.scenario.timestep)
+
+    @property
     def motion_reach(self) -> np.ndarray:
         """How far the present motion moves each joint (na,), rad; zeros without one."""
         return np.zeros(self.robot.na) if self._motion is None else self._motion.reach.sum(axis=0)
@@ -193,7 +199,7 @@ class Session:
         plates = self._ground.at(self.time)
         output = self._control(self._believed(dynamics), plates)
         torque, self._line = delayed(self._line, output.torque, self._ticks_late)
-        step = self._simulator.step(dynamics, torque, self.pushes, self.time)
+        step = self._simulator.step(dynamics, torque, self._pushed.all, self.time)
         self.fall = self.fall or fall_of(self.time, dynamics, step, plates.height, self._standing_height)
         sample = self._record(dynamics, output, step, plates)
         self._advance(output, step)
@@ -295,11 +301,11 @@ class Session:
         robot, engine = self.robot, self.scenario.engine
         check_mismatch(engine, self.choices_after(self._inbox).after(event, robot).mismatch)
         check_ground(engine, ground_after(self._ground, event, robot, self.time))
-        pushes_after(self.pushes, event, robot, self.time)
+        pushed_after(self._pushed, event, robot, self.time)
 
     def _apply(self, event: SessionEvent) -> None:
         self.choices = self.choices.after(event, self.robot)
-        self.pushes = pushes_after(self.pushes, event, self.robot, self.time)
+        self._pushed = pushed_after(self._pushed, event, self.robot, self.time)
         self._ground = ground_after(self._ground, event, self.robot, self.time)
         match event:
             case SelectController():
@@ -330,7 +336,7 @@ class Session:
     def _stand_up(self) -> None:
         """The robot where it started, the clock at zero."""
         self.state = self._start
-        self.pushes = self._scripted
+        self._pushed = Pushed(self._scripted)
         self.fall = None
         self.solver_failures = 0
         self.last_failure = None

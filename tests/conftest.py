@@ -20,6 +20,7 @@ with warnings.catch_warnings():
 
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
+from tests.order import ByFile, begin_first
 
 # Matrices of this size are done before a second thread has woken up; two of them only get in each other's way.
 threadpoolctl.threadpool_limits(1, user_api="blas")
@@ -34,6 +35,14 @@ STATES_PER_ROBOT = 50
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The only way in which golden pictures change."""
     parser.addoption("--update-pictures", action="store_true", help="make the golden pictures anew")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    begin_first(items)
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> ByFile:
+    return ByFile(config, log)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -20,8 +20,6 @@ from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
 from tests.conftest import assert_close
 
-pytestmark = pytest.mark.quiet
-
 TICKS = 60
 # Calls of functions in a tick of the standing robot, Python and C; the tick's time grows with them.
 MOST_CALLS_PER_TICK = 160
@@ -111,6 +109,7 @@ def com_speed(robot: RobotModel, peer: PeerLoop) -> float:
     return float(np.linalg.norm(dynamics.com_velocity))
 
 
+@pytest.mark.quiet
 def test_every_part_is_measured(measured: RobotBench) -> None:
     assert measured.robot == "g1"
     assert measured.ticks >= 50
@@ -119,6 +118,7 @@ def test_every_part_is_measured(measured: RobotBench) -> None:
         assert 1.0 < times.p50 <= times.p99, name
 
 
+@pytest.mark.quiet
 @pytest.mark.parametrize("name", ROBOTS)
 def test_tick_keeps_pace_with_the_peer(name: str) -> None:
     measured = measure(name, 1.0, lambda _: None)
@@ -173,11 +173,13 @@ def test_command_prints_the_profile(capsys: pytest.CaptureFixture[str]) -> None:
     assert "robot.model" in output
 
 
+@pytest.mark.quiet
 def test_parts_add_up_to_the_whole(measured: RobotBench) -> None:
     parts = sum(getattr(measured, stage).p50 for stage in STAGES)
     assert 0.5 < parts / measured.tick.p50 < 1.5
 
 
+@pytest.mark.quiet
 def test_real_time_factor_is_simulated_over_wall_time(measured: RobotBench) -> None:
     """The mean tick lies above the median, and one slow tick in a hundred does not make it ten times that."""
     fastest = 1e3 / measured.tick.p50

@@ -595,6 +595,7 @@ def test_without_arguments_the_app_is_served_on_this_machine(words: list[str], s
         "host": "127.0.0.1",
         "port": 8080,
         "open_browser": True,
+        "demo": None,
     }
     assert served == [expected]
 
@@ -616,6 +617,17 @@ def test_options_of_the_app_reach_it(served: list[Any]) -> None:
     assert first == second
     assert (first["scenario"].scenario.name, first["scenario"].scenario.robot) == ("push-lateral", "g1")
     assert (first["host"], first["port"], first["open_browser"]) == ("0.0.0.0", 0, False)
+
+
+@pytest.mark.parametrize(("words", "patience"), [(["--demo"], 120.0), (["--demo", "45"], 45.0)])
+def test_lab_plays_by_itself_when_asked(words: list[str], patience: float, served: list[Any]) -> None:
+    assert main(["app", *words]) == 0
+    assert served[0]["demo"] == patience
+
+
+def test_wait_before_the_demonstration_has_a_range(served: list[Any], capsys: Output) -> None:
+    assert "5 to 600" in refusal(capsys, "app", "--demo", "1")
+    assert served == []
 
 
 def test_app_is_not_served_for_a_robot_that_cannot_stand(

@@ -6,9 +6,10 @@ import msgspec
 import numpy as np
 import pytest
 
-from momentum_lab.effects import feet_named, ground_after, pushes_after
+from momentum_lab.effects import feet_named, ground_after, pushed_after
 from momentum_lab.errors import InputError
 from momentum_lab.events import ApplyPush, ApplyPushes, MoveGround, SetFriction, SetPriority, StopGround
+from momentum_lab.physics.held_push import Pushed
 from momentum_lab.physics.plate import PlateMotion
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
@@ -24,20 +25,20 @@ def ground(talos):
 
 
 def test_a_push_begins_now_whatever_its_own_start(talos):
-    (push,) = pushes_after((), ApplyPush(Push(force=10.0, start=7.0)), talos, NOW)
+    (push,) = pushed_after(Pushed(()), ApplyPush(Push(force=10.0, start=7.0)), talos, NOW).all
     assert (push.start, push.force) == (NOW, 10.0)
 
 
 def test_pushes_of_a_sequence_keep_their_distances_and_follow_the_earlier_ones(talos):
-    earlier = (Push(force=1.0, start=0.2),)
-    after = pushes_after(
+    earlier = Pushed((Push(force=1.0, start=0.2),))
+    after = pushed_after(
         earlier, ApplyPushes((Push(force=2.0, start=0.0), Push(force=3.0, start=0.5))), talos, NOW
     )
-    assert [(push.force, push.start) for push in after] == [(1.0, 0.2), (2.0, NOW), (3.0, NOW + 0.5)]
+    assert [(push.force, push.start) for push in after.all] == [(1.0, 0.2), (2.0, NOW), (3.0, NOW + 0.5)]
 
 
 def test_a_velocity_change_becomes_a_force_for_this_robot(talos):
-    (push,) = pushes_after((), ApplyPush(Push(velocity_change=0.2, duration=0.1)), talos, NOW)
+    (push,) = pushed_after(Pushed(()), ApplyPush(Push(velocity_change=0.2, duration=0.1)), talos, NOW).all
     assert push.force == pytest.approx(0.2 * talos.mass / 0.1)
 
 
@@ -59,7 +60,7 @@ def test_a_plate_moves_from_now_on_and_comes_to_rest_when_told(talos, ground):
 
 def test_events_about_something_else_change_nothing(talos, ground):
     assert ground_after(ground, SetPriority(0.5), talos, NOW) is ground
-    assert pushes_after((), SetPriority(0.5), talos, NOW) == ()
+    assert pushed_after(Pushed(()), SetPriority(0.5), talos, NOW) == Pushed(())
 
 
 def test_feet_by_name(talos):
@@ -81,4 +82,4 @@ def test_a_ground_that_cannot_be_is_refused(event, talos, ground):
 
 def test_a_push_on_no_body_of_the_robot_is_refused(talos):
     with pytest.raises(InputError, match="body: got tail"):
-        pushes_after((), ApplyPush(msgspec.structs.replace(Push(force=1.0), body="tail")), talos, NOW)
+        pushed_after(Pushed(()), ApplyPush(msgspec.structs.replace(Push(force=1.0), body="tail")), talos, NOW)

@@ -16,7 +16,7 @@ import zstandard
 from websockets.sync.client import ClientConnection, connect
 
 # What the page says about simulated time.
-_SIMULATED = re.compile(r"simulated time <b>([0-9.]+) s</b>")
+_SIMULATED = re.compile(r"simulated time \u2007*<b>([0-9.]+) s</b>")
 # Messages that move something in the scene.
 _MOVING = frozenset({"SetPositionMessage", "SetOrientationMessage", "SceneNodeUpdateMessage"})
 

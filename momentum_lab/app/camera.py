@@ -51,6 +51,25 @@ VIEWS = {
 START_VIEW = "Whole robot"
 
 
+@dataclass(frozen=True, slots=True)
+class Seat:
+    """From where a person looked, to be taken again.
+
+    Attributes:
+        position: of the camera (3,), m.
+        look_at: what it looks at (3,), m.
+        field_of_view: vertical, rad.
+        center: the point on the ground that it goes along with (2,), m.
+        looked: how two robots were looked at.
+    """
+
+    position: np.ndarray
+    look_at: np.ndarray
+    field_of_view: float
+    center: np.ndarray
+    looked: tuple[str, np.ndarray, float] | None
+
+
 class Camera:
     """The camera of one browser tab; people may turn it at any time.
 
@@ -82,6 +101,35 @@ class Camera:
         self._client.camera.fov = FIELD_OF_VIEW
         self._client.camera.position = position
         self._client.camera.look_at = target
+
+    def turn(self, degrees: float, spread: np.ndarray | None) -> None:
+        """Look from so far round the start view, at the place that is looked at anyway.
+
+        Args:
+            degrees: about the vertical.
+            spread: from one robot to the other, if there are two (2,), m.
+        """
+        view, center = VIEWS[START_VIEW], self._center
+        if spread is not None:
+            view = of_two(view, spread / self._size)
+        turned = replace(view, azimuth=view.azimuth + degrees)
+        target, position = camera_pose(turned, self._size, center, _aspect(self._client))
+        self._client.camera.position = position
+        self._client.camera.look_at = target
+
+    def seat(self) -> Seat:
+        """From where is looked now."""
+        camera = self._client.camera
+        return Seat(
+            np.array(camera.position), np.array(camera.look_at), camera.fov, self._center, self._looked
+        )
+
+    def take(self, seat: Seat) -> None:
+        """Look from there again."""
+        self._center, self._looked = seat.center, seat.looked
+        self._client.camera.fov = seat.field_of_view
+        self._client.camera.position = seat.position
+        self._client.camera.look_at = seat.look_at
 
     def follow(self, center: np.ndarray, leash: float) -> None:
         """Go along with a robot that gets out of the picture.

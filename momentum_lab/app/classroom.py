@@ -4,57 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from momentum_lab.app.demo_wire import DemoEvent, LeaveScenes, ShowScene
+from momentum_lab.app.interlude import Interlude
+from momentum_lab.app.lesson_runs import RunPlayback, staged
 from momentum_lab.app.lesson_wire import LeaveLesson, LessonEvent, LessonNews, OpenLesson, PlayRun, ShowRun
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.wire import OpenRun
 from momentum_lab.errors import InputError, LabError
 from momentum_lab.events import Branch, Event, LookBack, Pause, Play, Reset, SetSpeed, StepOnce
+from momentum_lab.lesson import parts
 from momentum_lab.lesson.loader import load_lesson
-from momentum_lab.lesson.parts import Lesson, Run
 from momentum_lab.lesson.playing import measured
 from momentum_lab.lesson.record import LessonRecord, recorded
-from momentum_lab.lesson.staging import Staging, is_over
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.scenario import changed
-
-# Ticks in a row while a run is played out of sight.
-_AT_A_TIME = 100
-
-
-class RunPlayback(Playback):
-    """The playback of a lesson's run: its events come at their times, and it stops at its end.
-
-    Args:
-        run: the run.
-        robot: who plays it.
-    """
-
-    def __init__(self, run: Run, robot: RobotModel) -> None:
-        self._staging: Staging | None = Staging(run)
-        super().__init__(changed(run.for_robot(robot.spec.name), beside=None), robot)
-
-    @property
-    def over(self) -> bool:
-        """Whether it has been played to its end."""
-        return is_over(self.session)
-
-    def release(self) -> None:
-        """Let it go on as a hand likes: nothing is to come any more, not even its end."""
-        self._staging, self.playing = None, True
-
-    def tick(self, count: int) -> None:
-        """Some ticks, fewer if the run comes to its end."""
-        for _ in range(count):
-            if self.stopped is not None or (self._staging and not self._staging.prepare(self.session)):
-                self.playing = False
-                return
-            super().tick(1)
-
-    def show(self, time: float) -> None:
-        """Stop, and look at the instant of that time, s."""
-        while not self.over and self.stopped is None and self.session.time < time:
-            self.tick(_AT_A_TIME)
-        self.take(LookBack(max(0.0, self.latest.number("time") - time)))
 
 
 class Classroom:
@@ -69,7 +32,8 @@ class Classroom:
 
     def __init__(self, own: Playback) -> None:
         self._own = self.stage = own
-        self._lesson: Lesson | None = None
+        self._interlude = Interlude()
+        self._lesson: parts.Lesson | None = None
         self._robot: RobotModel | None = None
         self._runs: dict[str, RunPlayback] = {}
         self._watched: set[str] = set()
@@ -80,12 +44,25 @@ class Classroom:
         self._error = ""
         self._told = LessonNews()
 
-    def take(self, event: Event | LessonEvent | OpenRun) -> None:
+    @property
+    def in_demo(self) -> bool:
+        """Whether what is on stage is a scene that nobody has asked for."""
+        return self._interlude.on
+
+    def take(self, event: Event | LessonEvent | DemoEvent | OpenRun) -> None:
         """Do what an event asks for, and put on stage what it is about.
 
         Raises:
             InputError: it asks for something that does not exist, is out of range, or comes too early.
         """
+        if isinstance(event, ShowScene):
+            self.stage = self._interlude.scene(self.stage, event.scenario)
+            return
+        self.stage = self._interlude.end(self.stage)
+        if not isinstance(event, LeaveScenes):
+            self._act(event)
+
+    def _act(self, event: Event | LessonEvent | OpenRun) -> None:
         before = self.stage
         match event:
             case OpenLesson():
@@ -135,8 +112,7 @@ class Classroom:
         self.stage.playing = False
 
     def _play(self, label: str) -> None:
-        self._put_on_stage(label)
-        self._watched.add(label)
+        self._watched |= self._put_on_stage(label)
         self._begun = True
 
     def _show(self, label: str, time: float) -> None:
@@ -146,21 +122,19 @@ class Classroom:
             self._put_on_stage(label)
         self._begun = self._begun or time > 0.0
         if time > 0.0:
-            self._finish(self._runs[label])
+            self._runs[label].finish()
         self._runs[label].show(time)
 
-    def _put_on_stage(self, label: str) -> None:
-        """A run of the lesson at its start."""
+    def _put_on_stage(self, label: str) -> set[str]:
+        """A run of the lesson at its start, and the one beside it; the labels of all that is on stage now."""
         lesson, robot = self._lesson, self._robot
         if lesson is None or robot is None or label not in lesson.runs:
             known = "no lesson is open" if lesson is None else f"one of {', '.join(lesson.runs)}"
             raise InputError("run", label, known)
-        self._runs[label] = RunPlayback(lesson.runs[label], robot)
-        self.stage, self._on_stage = self._runs[label], label
-
-    def _finish(self, playback: RunPlayback) -> None:
-        while not playback.over and playback.stopped is None:
-            playback.tick(_AT_A_TIME)
+        runs = staged(lesson, label, robot)
+        self._runs |= runs
+        self.stage, self._on_stage = runs[label], label
+        return set(runs)
 
     def _leave(self) -> None:
         self.stage, self._lesson, self._on_stage = self._own, None, ""
@@ -183,21 +157,29 @@ class Classroom:
         elif isinstance(event, Branch):
             self._branch(stage)
         else:
-            self._try_out(stage)
+            self._try_out()
             if not isinstance(event, Reset):
                 self.stage.take(event)
 
-    def _try_out(self, stage: RunPlayback) -> None:
-        """The start of a run without its pushes, for a hand to try."""
-        scenario = stage.session.scenario
-        self.stage = Playback(changed(scenario, pushes=(), beside=None), stage.session.robot)
+    def _try_out(self) -> None:
+        """The start of a run without its pushes, for a hand to try; with the robot beside it, if that can be."""
+        stage = self._runs[self._to_try()]
+        scenario = changed(stage.session.scenario, pushes=(), beside=stage.hand_over)
+        self.stage = Playback(scenario, stage.session.robot)
         self._on_stage = ""
+
+    def _to_try(self) -> str:
+        """The run on stage, or the one of the step that it belongs to if it has none of its own."""
+        steps = () if self._lesson is None else self._lesson.steps
+        plays = [step.run for step in steps if isinstance(step, parts.Play)]
+        watched = [label for label in reversed(plays) if label in self._watched]
+        return self._on_stage if self._on_stage in plays or not watched else watched[0]
 
     def _branch(self, stage: RunPlayback) -> None:
         """A copy of a run at the instant that is looked at, for a hand to go on from; the same bits lead there."""
         instant = stage.shown.number("time")
         if self._lesson is not None:
-            copy = RunPlayback(self._lesson.runs[self._on_stage], stage.session.robot)
+            copy = staged(self._lesson, self._on_stage, stage.session.robot)[self._on_stage]
             while copy.latest.number("time") < instant:
                 copy.tick(1)
             copy.release()

@@ -10,6 +10,7 @@ from momentum_lab.app.foresight import SECONDS
 from momentum_lab.app.foresight_scene import ForesightScene
 from momentum_lab.app.ghost import Ghost, KeptRun
 from momentum_lab.app.plots import Plots
+from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.runs_panel import RunsPanel
 from momentum_lab.app.side_scene import SideScene
@@ -46,6 +47,11 @@ class Comparison:
     def spread(self) -> np.ndarray | None:
         """From the first robot to the one beside it (2,), m; None without one."""
         return None if self._side is None else self._side.offset
+
+    @property
+    def other_body(self) -> RobotScene | None:
+        """The meshes of the robot beside the first; None without one."""
+        return None if self._side is None else self._side.body
 
     @property
     def other_fell(self) -> bool:
@@ -125,7 +131,8 @@ class Comparison:
             self._side = SideScene(self._client, loaded, beside)
             self._side.see_through(settings.see_through)
         self._side.draw(beside, other.truth, settings)
-        self._side.name(names_of(first, other.truth), (sample["com"], beside["com"]))
+        names = other.names or names_of(first, other.truth)
+        self._side.name(names, (sample["com"], beside["com"]))
 
     def see_through(self, on: bool) -> None:
         """Whether marks inside a body show."""

@@ -114,7 +114,8 @@ class ControlPanel:
                 1.0,
                 0.01,
                 truth.priority,
-                hint="0 keeps linear momentum: the CoP moves and the body turns. 1 keeps angular momentum: "
+                hint="From 0 to 1 (no unit). 0 keeps linear momentum: the CoP moves and the body turns. "
+                "1 keeps angular momentum: "
                 "the force tilts and the CoM moves.",
             ),
             SetPriority,

@@ -74,4 +74,6 @@ def push_in_words(push: Push) -> str:
         words += f", {push.height:g} m high"
     if push.body is not None:
         words += f", {push.body.replace('_', ' ')}"
+    if push.point is not None:
+        words += ", where it was grabbed"
     return words if push.shape == "rectangle" else f"{words}, {push.shape}"

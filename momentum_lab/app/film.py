@@ -77,7 +77,7 @@ def _studio(client: viser.ClientHandle, reel: Reel, settings: ViewSettings) -> I
     """The robot of the film on a floor of its own."""
     node = client.scene.add_frame(_STUDIO, position=_BELOW, show_axes=False)
     try:
-        add_floor(client, float(reel.ground.floor.origin[2]), _STUDIO)
+        add_floor(client, float(reel.ground.floor.origin[2]), "light", _STUDIO)
         yield ReelScene(client, reel, settings, _STUDIO)
     finally:
         node.remove()

@@ -46,7 +46,7 @@ class GroundPanel:
             self._foot: Any = gui.add_dropdown("under", (_ALL, *feet), hint="Whose ground is changed.")
             self._friction: Bound[float] = Bound(
                 gui.add_slider(
-                    "friction", 0.05, 1.5, 0.05, 0.7, hint="Coulomb coefficient: 0.1 ice, 1 rubber."
+                    "friction", 0.05, 1.5, 0.05, 0.7, hint="Coulomb coefficient: 0.1 ice, 1 rubber (no unit)."
                 ),
                 lambda value: SetFriction(value, self._name),
                 post,

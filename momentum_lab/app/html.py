@@ -6,8 +6,15 @@ from collections.abc import Iterable
 from html import escape
 
 from momentum_lab.app.marks import STYLES, MarkStyle
+from momentum_lab.app.steady import blanks, steady
 
-COLORS = {"green": "#007a59", "orange": "#b35c00", "vermillion": "#c43d00", "black": "#222222"}
+# On a dark page the style sheet below gives these names lighter colours.
+COLORS = {
+    "green": "var(--lab-green,#007a59)",
+    "orange": "var(--lab-orange,#b35c00)",
+    "vermillion": "var(--lab-vermillion,#c43d00)",
+    "black": "var(--lab-black,#222222)",
+}
 _SIGNS = {"standing": "●", "border": "▲", "lifted": "▲", "solver": "■", "fallen": "✖", "stopped": "■"}
 
 # The browser's own tab gets the lab's name; viser has no setting for it.
@@ -16,9 +23,16 @@ TITLE = (
     # Playing controls and the big button are what a hand looks for first.
     "<style>div:has(>.lab-big)+* button{height:3.1em!important;font-size:1.15em!important}"
     ".lab{padding:0 .75em .5em .75em;font-size:.875em;line-height:1.4}"
-    ".lab b{font-weight:600}.lab .n{font-variant-numeric:tabular-nums}"
+    ".lab b{font-weight:600}.lab .n,.lab.n{font-variant-numeric:tabular-nums}"
     ".lab.small{padding:.3em .75em .1em .75em;font-size:.78em;line-height:1.3}"
-    ".lab .dim{color:#6b6b6b}</style>"
+    ".lab .dim{color:#6b6b6b}"
+    "[data-mantine-color-scheme=dark]{--lab-green:#3cc79a;--lab-orange:#f0a544;--lab-vermillion:#ff8a5b;"
+    "--lab-black:#e6e6e6}"
+    "[data-mantine-color-scheme=dark] .lab .dim{color:#a6a6a6}"
+    '[data-mantine-color-scheme=dark] .lab svg [fill="#000000"]{fill:#fff}'
+    '[data-mantine-color-scheme=dark] .lab svg [stroke="#000000"]{stroke:#fff}'
+    # Viser's sheet on a phone is as wide as 20 letters and leaves the rest of the row empty.
+    "@media(max-width:36em){[style*='width: 20em']{width:100vw!important}}</style>"
 )
 _DASHED = ' stroke-dasharray="4 2.5"'
 BIG_NEXT = '<span class="lab-big"></span>'
@@ -46,10 +60,11 @@ def time_line(
 ) -> str:
     """Simulated time and how it runs, in figures that do not change their width."""
     asked = "" if speed == 1.0 else f" · speed {speed:g}"
-    pace = f"{real_time_factor:.2f} × real time" if playing else "paused"
+    pace = f"{steady(real_time_factor, 2, 1)} × real time" if playing else "paused"
     if behind:
-        pace = f"{behind:.2f} s before the end"
-    return f'<div class="lab n dim">simulated time <b>{time:.2f} s</b> · {pace}{asked}{_failures(failures)}</div>'
+        pace = f"{steady(behind, 2, 2)} s before the end"
+    clock = f"{blanks(time, 2, 3)}<b>{time:.2f} s</b>"
+    return f'<div class="lab n dim">simulated time {clock} · {pace}{asked}{_failures(failures)}</div>'
 
 
 def _failures(count: int) -> str:

@@ -15,6 +15,7 @@ from momentum_lab.events import (
     ApplyPushes,
     Event,
     Foresee,
+    HoldPush,
     LoadScenario,
     LookBack,
     SelectRobot,
@@ -60,6 +61,8 @@ def checked_event(event: Event, robots: Collection[str], scenarios: Collection[s
             raise InputError("scenario", name, f"one of {', '.join(scenarios)}")
         case ApplyPush(push):
             return ApplyPush(_checked(push))
+        case HoldPush(push):
+            return HoldPush(_checked(push))
         case ApplyPushes(pushes):
             if not 1 <= len(pushes) <= MOST_PUSHES:
                 raise InputError("sequence", f"{len(pushes)} pushes", f"1 to {MOST_PUSHES}")
@@ -93,4 +96,6 @@ def _checked(data: Data) -> Data:
 def _leaves(value: object, field: str) -> list[tuple[str, object]]:
     if isinstance(value, dict):
         return [leaf for key, inner in value.items() for leaf in _leaves(inner, str(key))]
+    if isinstance(value, list | tuple):
+        return [leaf for inner in value for leaf in _leaves(inner, field)]
     return [(field, value)]

@@ -9,6 +9,7 @@ from typing import Any
 
 import viser
 
+from momentum_lab.app.help_page import HELP
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.runs_panel import RunsPanel
 from momentum_lab.app.status_bar import LARGE_STEP, SMALL_STEP, StatusBar
@@ -18,28 +19,6 @@ from momentum_lab.events import Branch, Reset, StepOnce
 
 # Keys that follow each other faster than this come from one that is held down, s.
 _REPEATED = 0.12
-
-_HELP = """
-**P** push &nbsp;·&nbsp; **K** play or pause &nbsp;·&nbsp; **J** step 1 ms &nbsp;·&nbsp; **L** step 20 ms
-&nbsp;·&nbsp; **R** stand up again &nbsp;·&nbsp; **1 2 3 4 5** tabs &nbsp;·&nbsp; **H** this help
-
-**F** what would this push do &nbsp;·&nbsp; **M** keep this run as A &nbsp;·&nbsp; **N** same pushes again
-&nbsp;·&nbsp; **G** show or hide A
-
-A lesson, in the *Learn* tab on the left: **I** next step &nbsp;·&nbsp; **U** the step before.
-
-*Look back* shows what was; **B** goes on from the instant you look at, with other gains if you like.
-
-The robot stands on its own; you push it. The controller moves the **CoP** (◆) under the feet to bring the
-**CoM** (●) back. Where the safe border of the feet stops the CoP, the ground cannot give both goals: either the
-body turns (linear momentum is kept) or the CoM gives way (angular momentum is kept). The *priority* slider of the
-Control tab decides.
-
-The line from the CoM to the **CMP** (▲) is parallel to the ground reaction force. The bar from CoP to CMP is the
-lever with which that force turns the body: the longer it is, the faster angular momentum changes.
-
-Drag to turn the picture, right-drag to move it, scroll to come closer.
-"""
 
 
 def add_keys(
@@ -91,6 +70,6 @@ def _triggered(act: Callable[[], None]) -> Callable[[Any], None]:
 def _show_help(client: viser.ClientHandle) -> None:
     modal = client.gui.add_modal("How this lab works")
     with modal:
-        client.gui.add_markdown(_HELP)
+        client.gui.add_markdown(HELP)
         close = client.gui.add_button("Close")
     close.on_click(lambda _: modal.close())

@@ -15,6 +15,8 @@ LIST = '<span class="learn-list"></span>'
 # A number that is no further from the measured one than this part of what could be predicted is close.
 CLOSE = 0.1
 _BLUE, _GREEN, _RED = "#0072b2", COLORS["green"], COLORS["vermillion"]
+_DARK_PAGE = "[data-mantine-color-scheme=dark]"
+_DARK = f"{_DARK_PAGE} .learn"
 _STYLE = (
     "<style>.learn{padding:.15em .9em .5em .9em;font-size:.95em;line-height:1.45}"
     ".learn h3{font-size:1.05em;margin:.1em 0 .25em 0;font-weight:650}"
@@ -36,7 +38,13 @@ _STYLE = (
     "div:has(>.learn-list)~* button:hover:not(:disabled){border-color:#0072b2!important}"
     "div:has(>.learn-list)~* .mantine-Button-inner{justify-content:flex-start}"
     "div:has(>.learn-list)~* .mantine-Button-label{white-space:normal;text-align:left;height:auto;"
-    "overflow:visible;padding:.3em .2em;line-height:1.3;font-weight:450;font-size:1.08em}</style>"
+    "overflow:visible;padding:.3em .2em;line-height:1.3;font-weight:450;font-size:1.08em}"
+    f"{_DARK} .q,{_DARK} mtext{{color:#7cc4f0}}{_DARK} .dim{{color:#a6a6a6}}"
+    f"{_DARK} .o{{border-color:#4a5057}}{_DARK} .o.mine{{background:#16384d}}"
+    f"{_DARK} .bar{{background:#3a3f45}}{_DARK} .card{{background:#2b2f34}}"
+    f"{_DARK_PAGE} div:has(>.learn-list)~* button{{background:#2b2f34!important;color:#e4e7ea!important;"
+    f"border-color:#4a5057!important}}{_DARK_PAGE} div:has(>.learn-list)~* button:disabled"
+    "{color:#a6a6a6!important}</style>"
 )
 
 

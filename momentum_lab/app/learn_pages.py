@@ -145,7 +145,7 @@ class PlayPage(Page):
         words += f": {learn_html.spoken(label)}" if len(self._labels) > 1 else ""
         if words != self._button.label:
             self._button.label = words
-        if self._try_out is None and self._done() and self._step.controls:
+        if self._try_out is None and self._walk.all_seen and self._step.controls:
             self._desk.gui.add_html(learn_html.text("Now try it yourself."))
             scenario = self._walk.record.runs[self._step.run]
             desk = self._desk
@@ -162,9 +162,6 @@ class PlayPage(Page):
             return False
         self._try_out.push()
         return True
-
-    def _done(self) -> bool:
-        return all(label in self._walk.news.seen for label in self._labels)
 
     def _next(self) -> str:
         """The first run that has not been seen; then they go round."""
@@ -191,7 +188,7 @@ class ComparePage(Page):
         cards = "".join(learn_html.compared(*pair) for pair in self._walk.to_compare())
         if cards != self._cards.content:
             self._cards.content = cards
-        source = learn_html.source(self._walk.news.record is not None)
+        source = learn_html.source(self._walk.measured_in_sight)
         if source != self._source.content:
             self._source.content = source
 

@@ -13,6 +13,7 @@ from multiprocessing import forkserver
 import msgspec
 
 from momentum_lab.app import worker
+from momentum_lab.app.demo_wire import DemoEvent
 from momentum_lab.app.inbox import checked_event
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.wire import (
@@ -123,8 +124,8 @@ class Link:
                 yield answer
                 self._send(packed(FrameTaken()))
 
-    def ask(self, event: LessonEvent) -> None:
-        """Hand on what a lesson asks for."""
+    def ask(self, event: LessonEvent | DemoEvent) -> None:
+        """Hand on what a lesson or the demonstration asks for."""
         self._send(packed(event))
 
     def want_frame(self) -> None:

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from momentum_lab.app.label_scene import LabelScene, arrange
-from momentum_lab.app.marks import STYLES, MarkStyle
+from momentum_lab.app.marks import STYLES, MarkStyle, Theme, in_theme
 from momentum_lab.app.overlays import Mark
 from momentum_lab.app.shapes import is_solid, solid
 from momentum_lab.app.viewer import Viewer
@@ -47,6 +47,13 @@ class MarkScene:
         self._drawings: dict[str, _Drawing] = {}
         self._labels = LabelScene(client, root)
         self._points: dict[str, np.ndarray] = {}
+        self._theme: Theme = "light"
+
+    def paint(self, theme: Theme) -> None:
+        """Have the colours of a light or a dark page from the next picture on."""
+        if theme != self._theme:
+            self._theme = theme
+            self._clear()
 
     def draw(self, marks: list[Mark], shown: Collection[str], labelled: Collection[str]) -> None:
         """Show some of the marks.
@@ -65,9 +72,14 @@ class MarkScene:
 
     def remove(self) -> None:
         """Take all marks out of the scene."""
+        self._clear()
+        self._labels.remove()
+
+    def _clear(self) -> None:
         for key in self._drawings:
             self._client.scene.remove_by_name(f"{self._root}/marks/{key}")
-        self._labels.remove()
+        self._drawings.clear()
+        self._points.clear()
 
     def _draw_one(self, mark: Mark) -> None:
         points = np.array(mark.points, dtype=np.float32)
@@ -76,9 +88,8 @@ class MarkScene:
             return
         self._points[mark.key] = points
         if mark.key not in self._drawings:
-            self._drawings[mark.key] = _drawing(
-                self._client, self._root, STYLES[mark.key], points, self._size
-            )
+            style = in_theme(STYLES[mark.key], self._theme)
+            self._drawings[mark.key] = _drawing(self._client, self._root, style, points, self._size)
         else:
             self._drawings[mark.key].move(points)
 

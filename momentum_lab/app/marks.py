@@ -6,10 +6,11 @@ has a shape and a label of its own, so that colour is never the only difference.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 Color = tuple[int, int, int]
+Theme = Literal["light", "dark"]
 Shape = Literal[
     "ball",
     "ring",
@@ -29,6 +30,7 @@ Shape = Literal[
 Anchor = Literal["top-left", "top-right", "bottom-left", "bottom-right", "top-center"]
 
 BLACK: Color = (0, 0, 0)
+WHITE: Color = (255, 255, 255)
 ORANGE: Color = (230, 159, 0)
 SKY: Color = (86, 180, 233)
 GREEN: Color = (0, 158, 115)
@@ -69,6 +71,11 @@ class MarkStyle:
     def css(self) -> str:
         """The colour as #rrggbb."""
         return "#" + "".join(f"{channel:02x}" for channel in self.color)
+
+
+def in_theme(style: MarkStyle, theme: Theme) -> MarkStyle:
+    """How a mark looks on a light or a dark page: what is black on the one is white on the other."""
+    return replace(style, color=WHITE) if theme == "dark" and style.color == BLACK else style
 
 
 def _intensity(value: float) -> float:

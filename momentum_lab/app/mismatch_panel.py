@@ -69,7 +69,7 @@ def _slider(gui: viser.GuiApi, error: ModelError, value: float) -> Any:
         error.high,
         error.step,
         value,
-        hint=f"{error.help} From {error.low:g} to {error.high:g} {unit}".strip()
+        hint=f"{error.help} From {error.low:g} to {error.high:g} {unit or '(no unit)'}"
         + f"; default {error.default:g}.",
     )
 

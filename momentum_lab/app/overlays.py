@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import pinocchio as pin
 
 from momentum_lab.app.support_now import polygon_of, sole_placement
 from momentum_lab.momentum.ground import GRAVITY, NO_FORCE
 from momentum_lab.momentum.support import support_margin
-from momentum_lab.physics.push import Push
+from momentum_lab.physics.push import Push, pushed_frame
 from momentum_lab.recording import Sample
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.status import carrying_feet
@@ -24,9 +25,13 @@ _TOP_LAYER = 0.009
 _RAISED = np.array([0.0, 0.0, _TOP_LAYER])
 # A CoP and a CMP closer than this, in CoM heights, show no gap.
 _NO_GAP = 0.006
-# How long a push stays in the picture after its start, s; and its length for a force of one weight, in CoM heights.
+# How long a push stays in the picture after its start, s.
 _PUSH_SHOWN = 1.0
-_PUSH_LENGTH = 1.4
+PUSH_LENGTH = 1.4
+"""How long the arrow of a push is that is as strong as the robot's weight, in CoM heights."""
+
+# And how far above the tip of one that pulls its label sits, in CoM heights.
+_LABEL_ABOVE = 0.05
 # Labels of lines on the ground sit beside them, on the side from which the lab looks first; in CoM heights.
 _BESIDE = 0.13
 _SIDE = np.array([0.47, -0.88])
@@ -174,18 +179,36 @@ def _push(sample: Sample, picture: Picture, ground: float) -> list[Mark]:
         return []
     com = sample["com"]
     force = push.force or 0.0
-    height = com[2] if push.height is None else ground + push.height
-    tip = np.array([com[0], com[1], height]) - 0.12 * com[2] * push.direction
     weight = picture.robot.mass * GRAVITY
-    length = _PUSH_LENGTH * (com[2] - ground) * picture.arrow_scale * force / weight
+    arrow = PUSH_LENGTH * (com[2] - ground) * picture.arrow_scale * force / weight * push.direction
+    end = _pushed_point(sample, picture.robot, push, ground)
+    at = end - arrow
+    if push.point is not None:  # a hand pulls at its point, and the words must not hide a short arrow
+        end = end + arrow
+        at = end + _LABEL_ABOVE * com[2] * np.array([0.0, 0.0, 1.0])
     return [
         Mark(
             "push",
-            (_point(tip - length * push.direction), _point(tip)),
+            (_point(end - arrow), _point(end)),
             text=f"{force:.0f} N for {1e3 * push.duration:.0f} ms",
-            at=_point(tip - length * push.direction),
+            at=_point(at),
         )
     ]
+
+
+def _pushed_point(sample: Sample, robot: RobotModel, push: Push, ground: float) -> np.ndarray:
+    """Where a push meets the robot (3,), m: at its own point, or before the body."""
+    if push.point is not None:
+        data = robot.model.createData()
+        pin.forwardKinematics(robot.model, data, sample["q"])
+        point: np.ndarray = pin.updateFramePlacement(robot.model, data, pushed_frame(robot, push)).act(
+            np.array(push.point)
+        )
+        return point
+    com = sample["com"]
+    height = com[2] if push.height is None else ground + push.height
+    before: np.ndarray = np.array([com[0], com[1], height]) - 0.12 * com[2] * push.direction
+    return before
 
 
 def _metres_per_newton(sample: Sample, picture: Picture, ground: float) -> float:

@@ -7,9 +7,13 @@ from pathlib import Path
 
 import viser
 
-from momentum_lab.app import html, share_html
+from momentum_lab.app import access_html, html, share_html
+from momentum_lab.app.appearance import Appearance, dress
 from momentum_lab.app.control_panel import Choices, ControlPanel
+from momentum_lab.app.demo_panel import DemoPanel
+from momentum_lab.app.demo_stage import DemoStage
 from momentum_lab.app.ground_panel import GroundPanel
+from momentum_lab.app.hand import Hand
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.learn_panel import LearnPanel
 from momentum_lab.app.lesson_wire import LessonEvent
@@ -50,6 +54,7 @@ class Panels:
         ask: where a lesson's events go.
         library: the lessons.
         lesson: the script of the lesson to begin with.
+        demo: what plays while nobody touches the tab.
     """
 
     def __init__(
@@ -65,15 +70,17 @@ class Panels:
         feet: tuple[str, ...],
         ask: Callable[[LessonEvent], None],
         library: Library,
-        lesson: Path | None = None,
+        lesson: Path | None,
+        demo: DemoStage,
     ) -> None:
         gui = client.gui
-        gui.configure_theme(show_share_button=False, show_logo=False, brand_color=(0, 114, 178))
+        dress(gui, "light")
         gui.set_panel_label("Momentum lab")
         gui.main_panel.dock_right()
         gui.main_panel.set_width(_RIGHT)
         roomy = client.camera.image_width >= _ROOMY * client.camera.image_height
         self.settings = ViewSettings(labelled=ALL_LABELS if roomy else FEW_LABELS)
+        appearance = Appearance(client, self.settings, redraw)
         self.status = StatusBar(gui, post)
         gui.add_html(share_html.HIDDEN_NEXT)
         address = gui.add_text("address", "")
@@ -81,16 +88,22 @@ class Panels:
         with group.add_tab("Push"):
             self.push = PushPanel(gui, post, tell, redraw)
             SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
+            self.hand = Hand(client, self.push, self.settings, post, tell, lambda: sharing.take(False).pushes)
             self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control"):
             self.control = ControlPanel(gui, post, tell, choices, truth)
             self.mismatch = MismatchPanel(gui, post, truth)
         with group.add_tab("View"):
             ViewPanel(gui, self.settings, look, redraw)
+            appearance.add_choice(gui)
+            DemoPanel(gui, demo.demo)
         with group.add_tab("Runs"):
             self.runs = RunsPanel(gui, post, redraw, truth)
         with group.add_tab("Share"):
             self.share = SharePanel(gui, sharing, address)
+        demo.furnish()
+        appearance.add_ear(gui)
+        gui.add_html(access_html.NAMES)
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         left = gui.add_panel()
         # The browser opens the first tab.

@@ -17,6 +17,7 @@ from momentum_lab.events import (
     Branch,
     Event,
     Foresee,
+    HoldPush,
     LoadScenario,
     LookBack,
     MoveGround,
@@ -56,6 +57,8 @@ class Playback:
     """
 
     session: Session
+    names: tuple[str, str] | None = None
+    """What to call the two robots, if not by what differs."""
 
     def __init__(self, first: Scenario | Run, robot: RobotModel | None = None) -> None:
         self._first = as_run(first)
@@ -220,7 +223,7 @@ class Playback:
 
     def _pass_on(self, event: SessionEvent) -> None:
         self._post(event)
-        if isinstance(event, ApplyPush | ApplyPushes | MoveGround | StopGround | SetFriction):
+        if isinstance(event, ApplyPush | ApplyPushes | HoldPush | MoveGround | StopGround | SetFriction):
             self._behind = 0  # it acts now, and has to be seen
         if isinstance(event, Reset):
             self._behind = 0

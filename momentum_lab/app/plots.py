@@ -11,7 +11,7 @@ import numpy as np
 import viser
 
 from momentum_lab.app import html
-from momentum_lab.app.marks import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLES, Color
+from momentum_lab.app.marks import BLUE, GREEN, GREY, ORANGE, PURPLE, STYLES, Color
 from momentum_lab.app.second_curves import POINTS, curves_at
 from momentum_lab.app.series import WINDOW, Curves, History
 from momentum_lab.recording import Layout
@@ -266,7 +266,7 @@ def _plot(
     push = {
         "scale": "push",
         "stroke": "rgba(0,0,0,0)",
-        "fill": _css(BLACK, 0.16),
+        "fill": _css(GREY, 0.28),  # on white as on black
         "width": 0,
         "points": {"show": False},
     }

@@ -14,7 +14,7 @@ from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.support_now import polygon_of
 from momentum_lab.app.widgets import Post
 from momentum_lab.errors import InputError
-from momentum_lab.events import ApplyPush, Foresee
+from momentum_lab.events import ApplyPush, ApplyPushes, Foresee
 from momentum_lab.momentum.pendulum import pendulum_frequency, pendulum_impulse_bound
 from momentum_lab.momentum.support import distance_to_edge
 from momentum_lab.physics.push import Push
@@ -26,6 +26,7 @@ _VELOCITY_CHANGE, _DURATION = 0.24, 100.0
 _STRONGEST = 0.7
 _DIRECTIONS = {"forward": 0.0, "left": 90.0, "back": 180.0, "right": -90.0}
 _TRUNK = "trunk"
+_BY_HAND = ("pulse", "hold")
 # Slower than this the robot stands still, and its support is what the next push will meet, m/s.
 _STILL = 0.02
 
@@ -48,7 +49,8 @@ class PushPanel:
         redraw: Callable[[], None],
     ) -> None:
         self._post, self._tell, self._redraw = post, tell, redraw
-        self._last: Push | None = None
+        self._last: ApplyPush | ApplyPushes | None = None
+        self._grabbed: Push | None = None
         self._robot: LoadedRobot | None = None
         self._still: Sample | None = None
         self._size_text = ""
@@ -61,6 +63,13 @@ class PushPanel:
             hint="Tries the push on a copy of the robot and draws where its CoM and capture point would go.",
         )
         self._size = gui.add_html("")
+        gui.add_html(html.sentence("Or hold Shift and drag the robot in the picture."))
+        self._by_hand: Any = gui.add_dropdown(
+            "by hand",
+            _BY_HAND,
+            hint="Shift and drag: pulse pushes for the duration below when you let go, "
+            "hold pulls for as long as you do. Back where you began: no push.",
+        )
         self._force: Any = gui.add_slider("force (N)", 0.0, 500.0, 1.0, 200.0, hint="Peak force of the push.")
         self._duration: Any = gui.add_slider(
             "duration (ms)", 10.0, 1000.0, 10.0, _DURATION, hint="How long the push lasts."
@@ -69,7 +78,7 @@ class PushPanel:
             "direction (°)",
             -180.0,
             180.0,
-            5.0,
+            1.0,
             0.0,
             marks=((-90.0, "right"), (0.0, "forward"), (90.0, "left")),
             hint="Where the push points: 0 forward, 90 to the robot's left.",
@@ -88,6 +97,12 @@ class PushPanel:
             disabled=True,
             hint="Height of the push's line of action above the ground.",
         )
+        self._at_point: Any = gui.add_checkbox(
+            "where it was grabbed",
+            False,
+            visible=False,
+            hint="Push at the point that your hand has pulled, which moves with the body.",
+        )
         self._shape: Any = gui.add_dropdown(
             "shape", ("rectangle", "half-sine"), hint="How the force runs over time."
         )
@@ -101,10 +116,38 @@ class PushPanel:
         radians = math.radians(angle if math.isfinite(angle) else 0.0)
         return np.array([math.cos(radians), math.sin(radians)])
 
+    @property
+    def by_hand(self) -> str:
+        """What a hand in the picture does: `pulse` or `hold`.
+
+        Raises:
+            InputError: a browser has chosen something else.
+        """
+        if self._by_hand.value not in _BY_HAND:
+            raise InputError("by hand", self._by_hand.value, f"one of {', '.join(_BY_HAND)}")
+        return str(self._by_hand.value)
+
+    @property
+    def strongest(self) -> float:
+        """The most that the force slider gives, N."""
+        return float(self._force.max)
+
+    @property
+    def duration(self) -> float:
+        """How long a push lasts, s.
+
+        Raises:
+            InputError: it is no number.
+        """
+        if not math.isfinite(self._duration.value):
+            raise InputError("duration", self._duration.value, "a finite number")
+        return 1e-3 * float(self._duration.value)
+
     def set_robot(self, robot: LoadedRobot) -> None:
         """Fit ranges and bodies to a robot."""
         mass = robot.model.mass
         self._robot, self._still, self._last = robot, None, None
+        self._forget_point()
         self._force.max = _round(mass * _STRONGEST / 0.1)
         self._force.value = round(mass * _VELOCITY_CHANGE / (1e-3 * _DURATION))
         self._body.options = (_TRUNK, *(name for name in robot.model.spec.push_bodies if name != _TRUNK))
@@ -138,13 +181,16 @@ class PushPanel:
         for name, value in numbers.items():
             if not math.isfinite(value):
                 raise InputError(name, value, "a finite number")
+        grabbed = self._grabbed if self._at_point.value else None
+        through_com = self._through_com.value or grabbed is not None
         return Push(
             force=float(numbers["force"]),
             duration=1e-3 * numbers["duration"],
             direction_deg=float(numbers["direction"]),
-            height=None if self._through_com.value else float(numbers["height"]),
-            body=None if self._body.value == _TRUNK else self._body.value,
+            height=None if through_com else float(numbers["height"]),
+            body=grabbed.body if grabbed else None if self._body.value == _TRUNK else self._body.value,
             shape=self._shape.value,
+            point=grabbed.point if grabbed else None,
         )
 
     def show(self, push: Push) -> None:
@@ -155,18 +201,30 @@ class PushPanel:
         self._direction.value = (push.direction_deg + 180.0) % 360.0 - 180.0
         self._through_com.value = push.height is None
         self._height.value = self._height.value if push.height is None else push.height
-        self._body.value = push.body or _TRUNK
+        self._forget_point()
+        name = push.body or _TRUNK
+        if name not in self._body.options:
+            self._body.options = (*self._body.options, name)
+        self._body.value = name
+        if push.point is not None:
+            self._grabbed = push
+            self._at_point.visible = self._at_point.value = True
         self._shape.value = push.shape
         self._free_height()
 
     def apply(self) -> None:
         """Push."""
-        self._give(self.push)
+        try:
+            self.give(self.push())
+        except InputError as error:
+            self._tell(str(error))
 
     def apply_again(self) -> None:
         """Give the last push once more; without one, the push that the widgets describe."""
-        last = self._last
-        self._give(self.push if last is None else lambda: last)
+        if self._last is None:
+            self.apply()
+        else:
+            self._post(self._last)
 
     def ask(self) -> None:
         """Ask where the push would take the robot; nobody is pushed."""
@@ -175,20 +233,23 @@ class PushPanel:
         except InputError as error:
             self._tell(str(error))
 
-    def _give(self, make: Callable[[], Push]) -> None:
-        try:
-            push = make()
-            self._post(ApplyPush(push))
-            self._last = push
-        except InputError as error:
-            self._tell(str(error))
+    def give(self, push: Push) -> None:
+        """Give a push, which can be repeated then."""
+        self._post(ApplyPush(push))
+        self.can_repeat(ApplyPush(push))
+
+    def can_repeat(self, last: ApplyPush | ApplyPushes) -> None:
+        """Take note of what was given last."""
+        self._last = last
 
     def _wire(self) -> None:
         self.button.on_click(lambda _: self.apply())
         self._ask.on_click(lambda _: self.ask())
         self.repeat.on_click(lambda _: self.apply_again())
         self._presets.on_click(lambda event: self._point_to(event.target.value))
-        self._through_com.on_update(lambda _: self._free_height())
+        for box in (self._through_com, self._at_point):
+            box.on_update(lambda _: self._free_height())
+        self._body.on_update(self._other_body)
         for widget in (self._force, self._duration, self._direction, self._height, self._shape):
             widget.on_update(lambda _: self._redraw())
 
@@ -197,7 +258,18 @@ class PushPanel:
             self._direction.value = _DIRECTIONS[name]
 
     def _free_height(self) -> None:
-        self._height.disabled = self._through_com.value
+        self._through_com.disabled = bool(self._at_point.value)
+        self._height.disabled = bool(self._through_com.value or self._at_point.value)
+
+    def _other_body(self, event: Any) -> None:
+        """Another body has been chosen; a point of the one before means nothing on it."""
+        if event.client is not None:
+            self._forget_point()
+            self._free_height()
+
+    def _forget_point(self) -> None:
+        self._grabbed = None
+        self._at_point.visible = self._at_point.value = False
 
     def _describe(self, push: Push) -> str:
         """Impulse, and what part of it the CoP alone could catch."""

@@ -73,7 +73,7 @@ def _recorded(reel: Reel, report: Report, profile: RenderProfile) -> Iterator[St
     try:
         serializer = server.get_scene_serializer()
         add_world(server, profile)
-        add_floor(server, float(reel.ground.floor.origin[2]))
+        add_floor(server, float(reel.ground.floor.origin[2]), "light")
         _look(server, reel)
         scene = ReelScene(server, reel, ViewSettings())
         for i, sample in enumerate(reel.samples):

@@ -34,7 +34,8 @@ class ResponseSliders:
                 *_RATIOS,
                 0.01,
                 ratio,
-                hint=f"ζ = d ∕ (2√k). Below 1 the CoM overshoots, above 1 it creeps back. Sets the {damping} d.",
+                hint="ζ = d ∕ (2√k) (no unit). Below 1 the CoM overshoots, above 1 it creeps back. "
+                f"Sets the {damping} d.",
             ),
             lambda value: self._event(value, self._response()[1]),
             post,

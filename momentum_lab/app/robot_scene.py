@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +15,9 @@ from momentum_lab.app.viewer import Viewer
 
 _FREE_FLYER = 1
 _SEE_THROUGH = 0.3
+
+MODIFIER = "shift"
+"""What a hand that pulls holds down; without it a drag turns the picture, wherever it begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +67,7 @@ class RobotScene:
         self._drawn = q.copy()
         self._positions: dict[int, tuple[float, ...]] = {}
         self._frames = self._add_frames(client)
+        self._parts = robot.meshes
         self._meshes = [
             client.scene.add_mesh_simple(
                 f"{self._frames[mesh.joint].name}/mesh_{i}",
@@ -77,6 +82,20 @@ class RobotScene:
     def place_on_ground(self) -> np.ndarray:
         """Where the robot is, seen from above (2,), m."""
         return self._drawn[:2].copy()
+
+    @property
+    def drawn(self) -> np.ndarray:
+        """The configuration that is drawn (nq,)."""
+        return self._drawn.copy()
+
+    def on_drag(self, note: Callable[[int, Any], Awaitable[None]]) -> None:
+        """Let a hand that holds Shift drag any part of the robot; without Shift it turns the picture.
+
+        Args:
+            note: is told which joint the part moves with, and viser's event.
+        """
+        for mesh, handle in zip(self._parts, self._meshes, strict=True):
+            _listen(handle, mesh.joint, note)
 
     def draw(self, q: np.ndarray) -> None:
         """Move to a configuration (nq,)."""
@@ -135,3 +154,10 @@ class RobotScene:
         position = tuple(placement.translation.tolist())
         if self._positions.get(joint) != position:  # most joints only turn, and viser is slow to notice that
             self._positions[joint] = frame.position = position
+
+
+def _listen(handle: Any, joint: int, note: Callable[[int, Any], Awaitable[None]]) -> None:
+    async def dragged(event: Any) -> None:
+        await note(joint, event)
+
+    handle.on_drag("left", modifier=MODIFIER)(dragged)

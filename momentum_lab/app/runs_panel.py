@@ -52,7 +52,9 @@ class RunsPanel:
             gui.add_checkbox("a second robot", truth.beside is not None), self._with_second, post
         )
         self._priority: Bound[float] = Bound(
-            gui.add_slider("its priority", 0.0, 1.0, 0.01, 1.0, disabled=True), self._with_priority, post
+            gui.add_slider("its priority", 0.0, 1.0, 0.01, 1.0, disabled=True, hint="From 0 to 1 (no unit)."),
+            self._with_priority,
+            post,
         )
         self._controller: Bound[str] = Bound(
             gui.add_dropdown("its controller", (AS_FIRST, *CONTROLLERS), disabled=True),

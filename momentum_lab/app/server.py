@@ -44,6 +44,7 @@ class LabServer:
         profile: how much browsers have to draw.
         library: the lessons; None: those that ship with the package.
         lesson: the script of the lesson that every browser tab begins with.
+        demo: how long nobody has to touch a tab before it plays by itself, s; None: it never does.
 
     Raises:
         ServerError: the host or the port cannot be used.
@@ -58,9 +59,10 @@ class LabServer:
         profile: RenderProfile = NORMAL,
         library: Library | None = None,
         lesson: Path | None = None,
+        demo: float | None = None,
     ) -> None:
         _check_address(host, port)
-        self._library, self._lesson = library or Library(), lesson
+        self._library, self._lesson, self._demo = library or Library(), lesson, demo
         self._first, self._profile = as_run(first), profile
         scenario = self._first.scenario
         warm_up()
@@ -129,6 +131,7 @@ class LabServer:
                 self.url,
                 self._library,
                 self._lesson,
+                self._demo,
             )
 
     def _farewell(self, client: viser.ClientHandle) -> None:
@@ -150,6 +153,7 @@ def serve(
     profile: RenderProfile = NORMAL,
     library: Library | None = None,
     lesson: Path | None = None,
+    demo: float | None = None,
 ) -> None:
     """Serve the lab until Ctrl+C or SIGTERM.
 
@@ -161,12 +165,13 @@ def serve(
         profile: how much browsers have to draw.
         library: the lessons; None: those that ship with the package.
         lesson: the script of the lesson that every browser tab begins with.
+        demo: how long nobody has to touch a tab before it plays by itself, s; None: it never does.
 
     Raises:
         ServerError: the host or the port cannot be used.
         InputError: the scenario cannot start, or a mesh of its robot is missing.
     """
-    with _ended_by_signal() as ended, LabServer(first, host, port, profile, library, lesson) as lab:
+    with _ended_by_signal() as ended, LabServer(first, host, port, profile, library, lesson, demo) as lab:
         print(f"momentum lab: {lab.url}  (Ctrl+C ends it)", flush=True)
         if open_browser:
             webbrowser.open(lab.url)

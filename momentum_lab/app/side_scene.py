@@ -40,7 +40,7 @@ class SideScene:
         self._loaded, self._com = robot, sample["com"].copy()
         self.offset = _APART * size * _left(sample["q"])
         self._node = client.scene.add_frame(_ROOT, position=np.append(self.offset, 0.0), show_axes=False)
-        self._body = RobotScene(client, robot, sample["q"], f"{_ROOT}/robot")
+        self.body = RobotScene(client, robot, sample["q"], f"{_ROOT}/robot")
         self._marks = MarkScene(client, size, _ROOT)
         self._plates = PlateScene(client, robot.model, _ROOT)
         self._names = [NamePlate(client, "/name", size), NamePlate(client, f"{_ROOT}/name", size)]
@@ -62,7 +62,8 @@ class SideScene:
         picture = Picture(self._loaded.model, truth.push, border, settings.arrow_scale)
         self._plates.draw(sample["ground_pose"], truth.friction, truth.uneven)
         self._com = sample["com"].copy()
-        self._body.draw(sample["q"])
+        self.body.draw(sample["q"])
+        self._marks.paint(settings.theme)
         self._marks.draw(overlays(sample, picture), settings.shown, settings.labelled & _LABELLED)
 
     def name(self, words: tuple[str, str], places: tuple[np.ndarray, np.ndarray]) -> None:
@@ -77,11 +78,11 @@ class SideScene:
 
     def see_through(self, on: bool) -> None:
         """Whether the marks inside the body show."""
-        self._body.see_through(on)
+        self.body.see_through(on)
 
     def remove(self) -> None:
         """Leave the scene, with both names."""
-        self._body.remove()
+        self.body.remove()
         self._marks.remove()
         self._plates.remove()
         for plate in self._names:

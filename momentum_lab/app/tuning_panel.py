@@ -199,7 +199,7 @@ def gain_slider(gui: viser.GuiApi, gain: GainInfo, value: float) -> Any:
         gain.high,
         nice_step(gain.low, gain.high, gain.default),
         value,
-        hint=f"{gain.help} From {gain.low:g} to {gain.high:g} {unit(gain)}; default {gain.default:g}.",
+        hint=f"{gain.help} From {gain.low:g} to {gain.high:g} {unit(gain) or '(no unit)'}; default {gain.default:g}.",
     )
 
 

@@ -10,7 +10,7 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.camera import VIEWS
-from momentum_lab.app.marks import ALL_LABELS, PRESETS, START_PRESET, STYLES
+from momentum_lab.app.marks import ALL_LABELS, PRESETS, START_PRESET, STYLES, Theme
 
 _TIMES = {"½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0}
 
@@ -24,6 +24,7 @@ class ViewSettings:
         labelled: keys of the marks that may have a label in the scene.
         see_through: whether the robot is transparent.
         arrow_scale: length of force arrows against their natural length.
+        theme: whether the page is light or dark.
         changed: whether the next drawing has to look at all of this again.
     """
 
@@ -31,6 +32,7 @@ class ViewSettings:
     labelled: frozenset[str] = ALL_LABELS
     see_through: bool = True
     arrow_scale: float = 1.0
+    theme: Theme = "light"
     changed: bool = True
 
 

@@ -9,17 +9,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import viser
 
 from momentum_lab.app.camera import LOOSE, START_VIEW, TIGHT, VIEWS, Camera
 from momentum_lab.app.comparison import Comparison
 from momentum_lab.app.control_panel import Choices
+from momentum_lab.app.demo_stage import DemoStage
 from momentum_lab.app.exporter import finished
 from momentum_lab.app.film import film
+from momentum_lab.app.hand import Reach
+from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
-from momentum_lab.app.marks import FEW_LABELS
+from momentum_lab.app.marks import FEW_LABELS, Theme
 from momentum_lab.app.overlays import Picture, overlays
 from momentum_lab.app.panels import Panels
 from momentum_lab.app.plate_scene import PlateScene
@@ -49,6 +53,7 @@ class Stage:
         marks: its marks in the scene.
         plates: the plates under its feet.
         camera: what looks at it.
+        size: height of its CoM as it began, m.
     """
 
     name: str
@@ -57,6 +62,7 @@ class Stage:
     marks: MarkScene
     plates: PlateScene
     camera: Camera
+    size: float
 
 
 class Visitor:
@@ -71,6 +77,7 @@ class Visitor:
         url: where the lab is served.
         library: the lessons.
         lesson: the script of the lesson to begin with.
+        demo: how long nobody has to touch the tab before it plays by itself, s; None: it never does.
     """
 
     def __init__(
@@ -83,6 +90,7 @@ class Visitor:
         url: str,
         library: Library,
         lesson: Path | None = None,
+        demo: float | None = None,
     ) -> None:
         self._url, self._library, self._lesson = url, library, lesson
         self._client, self._shelf, self._profile = client, shelf, profile
@@ -91,8 +99,9 @@ class Visitor:
         self._stage: Stage | None = None
         self._panels: Panels | None = None
         self._comparison = Comparison(client)
+        self._demo = DemoStage(client, self._link.ask, self._robot, demo)
         self._run = -1
-        self._floor = 0.0
+        self._floor: tuple[float, Theme] = (0.0, "light")
         self._left = False
         self.frames = 0
         self.latest: Frame | None = None
@@ -111,10 +120,15 @@ class Visitor:
 
     def post(self, event: Event) -> None:
         """Hand an event to the session; tell the person if it is not allowed."""
+        self._demo.demo.touch()
         try:
             self._link.post(event)
         except InputError as error:
             self.tell(str(error))
+
+    def _ask(self, event: LessonEvent) -> None:
+        self._demo.demo.touch()
+        self._link.ask(event)
 
     def tell(self, words: str) -> None:
         """Show a notice."""
@@ -123,6 +137,7 @@ class Visitor:
     def close(self) -> None:
         """End the session and the drawing: the tab has been closed."""
         self._left = True
+        self._demo.close()
         self._link.close()
         self._thread.join()
 
@@ -148,6 +163,7 @@ class Visitor:
         if self._panels is not None:
             self._comparison.begin(frame, loaded, self._panels.runs, self._panels.plots)
         stage = self._set_stage(truth, loaded, sample)
+        self._demo.before(stage.camera, frame.demo)
         panels = self._panels or self._furnish(truth, loaded.layout.foot_names)
         self._comparison.begin(frame, loaded, panels.runs, panels.plots)
         if truth.run != self._run:
@@ -158,6 +174,8 @@ class Visitor:
             changed = self._comparison.draw(frame, sample, panels.settings)
         if changed:
             self._look(START_VIEW)
+            self._reach_other(panels, stage)
+        self._demo.after(stage.camera, self._comparison.spread, frame.demo)
         self._client.flush()
         self._draw_panels(panels, frame, loaded, sample)
 
@@ -173,7 +191,7 @@ class Visitor:
         body = RobotScene(self._client, loaded, sample["q"])
         marks, camera = MarkScene(self._client, size), Camera(self._client, size)
         plates = PlateScene(self._client, loaded.model)
-        self._stage = Stage(truth.robot, loaded, body, marks, plates, camera)
+        self._stage = Stage(truth.robot, loaded, body, marks, plates, camera, size)
         self._look(START_VIEW)
         if self._panels is not None:
             self._receive(self._panels, self._stage)
@@ -190,13 +208,18 @@ class Visitor:
             truth,
             self._sharing(),
             feet,
-            self._link.ask,
+            self._ask,
             self._library,
             self._lesson,
+            self._demo,
         )
         if self._stage is not None:
             self._receive(self._panels, self._stage)
         return self._panels
+
+    def _robot(self) -> str:
+        """Which robot plays."""
+        return "" if self._stage is None else self._stage.name
 
     def _sharing(self) -> Sharing:
         return Sharing(
@@ -219,6 +242,7 @@ class Visitor:
     def _receive(self, panels: Panels, stage: Stage) -> None:
         """Fit the panels to the robot on stage."""
         panels.push.set_robot(stage.loaded)
+        panels.hand.reach(Reach(stage.body, stage.loaded, stage.size, np.zeros(3)))
         panels.learn.set_robot(stage.loaded)
         panels.begin_plots(stage.loaded)
         panels.ground.set_feet(stage.loaded.layout.foot_names)
@@ -233,9 +257,11 @@ class Visitor:
         picture = Picture(
             stage.loaded.model, truth.push, truth.gains.get("safe_border", 0.0), settings.arrow_scale
         )
-        if truth.floor != self._floor:
-            self._floor = truth.floor
-            add_floor(self._client, truth.floor)
+        floor = (truth.floor, settings.theme)
+        if floor != self._floor:
+            self._floor = floor
+            add_floor(self._client, *floor)
+        stage.marks.paint(settings.theme)
         stage.plates.draw(sample["ground_pose"], truth.friction, truth.uneven)
         stage.body.draw(sample["q"])
         place = self._comparison.middle(sample["com"][:2])
@@ -243,6 +269,12 @@ class Visitor:
         alone = self._comparison.spread is None
         labelled = settings.labelled if alone else settings.labelled & FEW_LABELS
         stage.marks.draw(overlays(sample, picture), settings.shown, labelled)
+
+    def _reach_other(self, panels: Panels, stage: Stage) -> None:
+        """Let the robot beside the first be grabbed, too; what pushes one pushes both."""
+        other, spread = self._comparison.other_body, self._comparison.spread
+        if other is not None and spread is not None:
+            panels.hand.reach(Reach(other, stage.loaded, stage.size, np.append(spread, 0.0)))
 
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
         truth = frame.truth
@@ -253,6 +285,7 @@ class Visitor:
         panels.ground.follow(truth)
         panels.mismatch.follow(truth)
         panels.control.see(sample)
+        panels.hand.playing = truth.playing
         panels.control.bounds.see(sample, loaded.model, truth)
         if truth.fall is None:
             panels.push.see(sample)

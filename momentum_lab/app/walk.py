@@ -48,8 +48,10 @@ class Walk:
 
     @property
     def frozen(self) -> bool:
-        """Whether predictions can not be changed any more: a run has been seen."""
-        return bool(self.news.seen)
+        """Whether the open step's prediction can not be changed any more: a run that answers it has been seen."""
+        ahead = (place for place, step in enumerate(self.record.steps) if place >= self.place)
+        answering = next((place for place in ahead if self.record.steps[place].kind == "play"), None)
+        return answering is not None and not self._shown(answering).isdisjoint(self.news.seen)
 
     @property
     def played(self) -> str:
@@ -59,18 +61,30 @@ class Walk:
         return behind[-1] if behind else runs[0]
 
     def runs_to_play(self) -> tuple[str, ...]:
-        """The runs of the step that is open: its own, the one beside it, and those that no other step plays."""
-        step, steps = self.step, self.record.steps
-        elsewhere = {
-            run
-            for other in steps
-            if other is not step
-            for run in (other.run, other.beside)
-            if other.kind == "play"
-        }
-        rest = [run for run in self.record.runs if run not in elsewhere]
-        own = [run for run in (step.run, step.beside) if run]
-        return tuple(dict.fromkeys([*own, *rest]))
+        """The runs that the open step plays one after the other: its own, and those that no step plays."""
+        return self._played(self.place)
+
+    @property
+    def all_seen(self) -> bool:
+        """Whether everything that the open step plays has been seen to its end."""
+        return self._shown(self.place) <= set(self.news.seen)
+
+    @property
+    def measured_in_sight(self) -> bool:
+        """Whether everything that was played up to the open step has been seen."""
+        plays = (place for place in range(self.place) if self.record.steps[place].kind == "play")
+        return all(self._shown(place) <= set(self.news.seen) for place in plays)
+
+    def _played(self, place: int) -> tuple[str, ...]:
+        steps = self.record.steps
+        of_steps = {run for step in steps if step.kind == "play" for run in (step.run, step.beside)}
+        rest = [run for run in self.record.runs if run not in of_steps]
+        return tuple(dict.fromkeys([steps[place].run, *rest]))
+
+    def _shown(self, place: int) -> set[str]:
+        """The runs that a step plays, with the one beside its own."""
+        beside = self.record.steps[place].beside
+        return {*self._played(place), beside} if beside else set(self._played(place))
 
     def to_compare(self) -> list[tuple[StepRecord, float | None]]:
         """The predictions that the open step looks back at, each with what was answered."""

@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 
 from momentum_lab import events
+from momentum_lab.app.demo_wire import DemoEvent
 from momentum_lab.app.lesson_wire import LessonEvent, LessonNews
 from momentum_lab.beside import Beside
 from momentum_lab.control.ground_sense import GroundSense
@@ -125,11 +126,13 @@ class Other(msgspec.Struct, frozen=True):
         truth: what is the case with it.
         row: its latest sample, float64.
         history: its samples at the pace of the plots since the last frame, float64, oldest first.
+        names: what to call the two robots; None: by what differs.
     """
 
     truth: Truth
     row: bytes
     history: bytes
+    names: tuple[str, str] | None = None
 
 
 class Foreseen(msgspec.Struct, frozen=True):
@@ -158,6 +161,7 @@ class Frame(msgspec.Struct, frozen=True, tag=True):
         lesson: how far the lesson has come, if that is new.
         other: the robot beside the first; None when there is none.
         foreseen: what a push would do, once for every robot and question.
+        demo: whether this is a scene that the lab plays by itself.
     """
 
     truth: Truth
@@ -168,6 +172,7 @@ class Frame(msgspec.Struct, frozen=True, tag=True):
     lesson: LessonNews | None = None
     other: Other | None = None
     foreseen: tuple[Foreseen, ...] = ()
+    demo: bool = False
 
 
 class RunTaken(msgspec.Struct, frozen=True, tag=True):
@@ -192,7 +197,7 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
     com_speed: float
 
 
-Message = events.Event | LessonEvent | FrameTaken | FrameWanted | OpenRun | RunWanted
+Message = events.Event | LessonEvent | DemoEvent | FrameTaken | FrameWanted | OpenRun | RunWanted
 Answer = Frame | RunTaken
 
 _encoder = msgspec.msgpack.Encoder()

@@ -17,6 +17,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from momentum_lab.app.classroom import Classroom
+from momentum_lab.app.demo_wire import DemoEvent
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.pacer import Pacer
 from momentum_lab.app.playback import Playback
@@ -34,6 +35,7 @@ from momentum_lab.app.wire import (
 )
 from momentum_lab.errors import LabError
 from momentum_lab.events import Event, Play, SetSpeed
+from momentum_lab.recording import Recording
 from momentum_lab.run_file import Run
 
 FRAMES_PER_SECOND = 40.0
@@ -134,7 +136,7 @@ class Worker:
             case _:
                 self._take(message)
 
-    def _take(self, event: Event | LessonEvent | OpenRun) -> None:
+    def _take(self, event: Event | LessonEvent | DemoEvent | OpenRun) -> None:
         before = self._playback
         run, playing, ticks = before.run, before.playing, before.session.ticks
         try:
@@ -146,7 +148,9 @@ class Worker:
             self._history.clear()
             self._other_history.clear()
         if playback is not before:
-            self._history += list(playback.session.recording.rows(HISTORY_EVERY)[-_MOST_HISTORY:].copy())
+            self._history += _rows(playback.session.recording)
+            if playback.beside is not None:
+                self._other_history += _rows(playback.beside.session.recording)
         if playback.run != run or playing != playback.playing or isinstance(event, Play | SetSpeed):
             self._pacer.start(self._clock(), playback.speed)
         if playback.run != run or playback.session.ticks != ticks:
@@ -199,6 +203,7 @@ class Worker:
             lesson=self._room.news(),
             other=self._other(truth),
             foreseen=self._foreseen,
+            demo=self._room.in_demo,
         )
         self._history.clear()
         self._other_history.clear()
@@ -213,7 +218,7 @@ class Worker:
         truth, shown = self._playback.beside_truth(first), self._playback.beside_shown
         if truth is None or shown is None:
             return None
-        return Other(truth, shown.row.tobytes(), _joined(self._other_history))
+        return Other(truth, shown.row.tobytes(), _joined(self._other_history), self._playback.names)
 
     def _rest(self, now: float) -> float:
         """How long nothing has to be done, s; an event ends it early."""
@@ -228,6 +233,10 @@ class Worker:
         if self._news and self._taken:
             return max(0.0, self._next_frame - now)
         return _LONG
+
+
+def _rows(recording: Recording) -> list[np.ndarray]:
+    return list(recording.rows(HISTORY_EVERY)[-_MOST_HISTORY:].copy())
 
 
 def _joined(rows: list[np.ndarray]) -> bytes:

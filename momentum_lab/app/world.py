@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+from momentum_lab.app.marks import Color, Theme
 from momentum_lab.app.profile import RenderProfile
 from momentum_lab.app.viewer import Viewer
+
+# Of the floor, its lines every 10 cm, its lines every metre.
+_COLORS: dict[Theme, tuple[Color, Color, Color]] = {
+    "light": ((246, 246, 244), (222, 222, 222), (176, 176, 176)),
+    "dark": ((44, 47, 52), (62, 66, 72), (104, 110, 118)),
+}
 
 
 def add_world(client: Viewer, profile: RenderProfile) -> None:
@@ -11,11 +18,12 @@ def add_world(client: Viewer, profile: RenderProfile) -> None:
     client.scene.configure_default_lights(enabled=True, cast_shadow=profile.shadows)
     if not profile.environment:
         client.scene.configure_environment_map(None)
-    add_floor(client, 0.0)
+    add_floor(client, 0.0, "light")
 
 
-def add_floor(client: Viewer, height: float, root: str = "") -> None:
-    """Put the floor at a height, m, below a node; without one below the world's."""
+def add_floor(client: Viewer, height: float, theme: Theme, root: str = "") -> None:
+    """Put the floor of a light or a dark page at a height, m, below a node; without one below the world's."""
+    plane, cell, section = _COLORS[theme]
     client.scene.add_grid(
         f"{root}/ground",
         position=(0.0, 0.0, height),
@@ -23,12 +31,12 @@ def add_floor(client: Viewer, height: float, root: str = "") -> None:
         fade_distance=14.0,
         fade_strength=1.5,
         cell_size=0.1,
-        cell_color=(222, 222, 222),
+        cell_color=cell,
         cell_thickness=0.6,
         section_size=1.0,
-        section_color=(176, 176, 176),
+        section_color=section,
         section_thickness=1.0,
-        plane_color=(246, 246, 244),
+        plane_color=plane,
         plane_opacity=1.0,
         shadow_opacity=0.22,
     )

@@ -23,5 +23,5 @@ def app(args: Namespace) -> int:
 
     from momentum_lab.app.server import serve
 
-    serve(run, host=args.host, port=args.port, open_browser=not args.no_browser)
+    serve(run, host=args.host, port=args.port, open_browser=not args.no_browser, demo=args.demo)
     return 0

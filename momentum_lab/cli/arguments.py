@@ -7,6 +7,7 @@ import re
 from typing import Any, NoReturn
 
 from momentum_lab import __version__
+from momentum_lab.app.patience import LEAST_PATIENCE, MOST_PATIENCE, PATIENCE
 from momentum_lab.cli.values import (
     ABOVE_ZERO,
     controlled_directions,
@@ -165,6 +166,14 @@ def _app_arguments(parser: _Parser) -> None:
     parser.add_argument("--scenario", metavar="S", help="what to start with; otherwise stand")
     _choice_arguments(parser)
     _code_argument(parser)
+    parser.add_argument(
+        "--demo",
+        type=number("--demo", LEAST_PATIENCE, MOST_PATIENCE, "s"),
+        nargs="?",
+        const=PATIENCE,
+        metavar="SECONDS",
+        help=f"play by itself when nobody has touched a tab for so long ({PATIENCE:g} s)",
+    )
     _serving_arguments(parser)
 
 
@@ -293,7 +302,9 @@ def _choice_arguments(parser: _Parser) -> None:
         help="directions of momentum that are asked for: all, linear+kz, lx+ly, ...",
     )
     parser.add_argument("--planner", metavar="P", help="what makes the momentum rates that are asked for")
-    parser.add_argument("--motion", metavar="M", help="what the robot does: kick, arm-swing, cat-left, ...")
+    parser.add_argument(
+        "--motion", metavar="M", help="what the robot does: kick, reach, arm-swing, cat-left, ..."
+    )
     parser.add_argument(
         "--angular-goal", metavar="G", help="angular momentum asked for: zero, or reference, the motion's own"
     )

@@ -15,7 +15,8 @@ from momentum_lab.control.fallback import NO_FOOT, hold_posture, in_words, witho
 from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds, StanceFeet
 from momentum_lab.control.gains import gain
 from momentum_lab.control.planner import OWN, PLANNERS, Support
-from momentum_lab.control.priority import Compromise, compromise
+from momentum_lab.control.priority import Compromise
+from momentum_lab.control.turning_back import balanced
 from momentum_lab.errors import SolverError
 from momentum_lab.momentum.directions import ALL
 from momentum_lab.momentum.ground import GRAVITY, cop_from_momentum_rate
@@ -129,7 +130,7 @@ class ComputedTorque:
         program, weights = self._acceleration_program(reference.stance), _weights(gains)
         if reference.controlled != ALL:
             desired = program.rate_with_free_directions(dynamics, desired, reference, weights)
-        balance = self._balance(dynamics, desired, stance, gains, priority)
+        balance = balanced(self.robot.mass, dynamics, desired, reference, stance, gains, priority)
         try:
             feet = self._foot_forces(stance, balance, gains)
             acceleration = program.solve(dynamics, feet, reference, weights)
@@ -172,25 +173,6 @@ class ComputedTorque:
         if reference.angular_momentum_rate is not None:
             rate[3:] += reference.angular_momentum_rate
         return rate
-
-    def _balance(
-        self,
-        dynamics: Dynamics,
-        desired: np.ndarray,
-        stance: StanceFeet,
-        gains: ComputedTorqueGains,
-        priority: float,
-    ) -> Compromise:
-        """The net force and angular rate to ask the ground for (section 5.1.2)."""
-        return compromise(
-            desired,
-            dynamics.com_in_world,
-            self.robot.mass,
-            stance.safe_polygon,
-            stance.height,
-            gains.friction,
-            priority,
-        )
 
     def _foot_forces(self, stance: StanceFeet, balance: Compromise, gains: ComputedTorqueGains) -> FootForces:
         """Step 1: admissible wrenches of the feet."""

@@ -23,6 +23,7 @@ ANGULAR_GOALS: tuple[AngularGoal, ...] = ("zero", "reference")
 # The robot stands for a moment before it moves, s; a swing grows to its full size within so long, s.
 _START, _GROWTH = 0.5, 1.0
 _KICK, _PAUSE = 0.7, 1.3
+_REACH, _HOLD, _REST = 0.6, 0.2, 0.6
 _SWING = 1.0
 # A loop in the air starts at once and takes so long, s; this part of it is getting up to speed, as much is
 # stopping; then the legs rest.
@@ -57,6 +58,20 @@ def kick_course(time: float) -> tuple[float, float]:
     angle = math.pi * phase / _KICK
     sine = math.sin(angle)
     return sine**3, 3.0 * math.pi / _KICK * sine**2 * math.cos(angle)
+
+
+def reach_course(time: float) -> tuple[float, float]:
+    """Out within 0.6 s, held for 0.2 s, back within 0.6 s, then a pause as long.
+
+    s = 10 u^3 - 15 u^4 + 6 u^5, with no jump up to s'' (minimum jerk).
+    """
+    if time < _START:
+        return 0.0, 0.0
+    t = (time - _START) % (2.0 * _REACH + _HOLD + _REST)
+    away, back = min(t / _REACH, 1.0), min(max(0.0, t - _REACH - _HOLD) / _REACH, 1.0)
+    way = [u**3 * (10.0 - 15.0 * u + 6.0 * u**2) for u in (away, back)]
+    rate = [30.0 * (u * (1.0 - u)) ** 2 / _REACH for u in (away, back)]
+    return way[0] - way[1], rate[0] - rate[1]
 
 
 def swing_course(time: float) -> tuple[float, float]:
@@ -102,6 +117,11 @@ def out_course(time: float) -> tuple[float, float]:
 
 MOTIONS: dict[str, Motion] = {
     "kick": Motion("one leg kicks forward, again and again", {"kick": kick_course}, _KICK + _PAUSE),
+    "reach": Motion(
+        "the right hand reaches forward and comes back, again and again",
+        {"reach": reach_course},
+        2.0 * _REACH + _HOLD + _REST,
+    ),
     "arm-swing": Motion("both arms swing, once a second", {"arm-swing": swing_course}, 1.0 / _SWING),
     "cat-left": Motion(
         "in the air: a loop of the legs that turns the body to the left",

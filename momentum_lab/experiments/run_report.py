@@ -19,6 +19,7 @@ from momentum_lab.experiments.claims import Claim, at_most
 from momentum_lab.experiments.run_plots import on_the_ground, over_time, png
 from momentum_lab.finished import FinishedRun
 from momentum_lab.headless import Timing
+from momentum_lab.physics.push import Push
 from momentum_lab.provenance import versions
 from momentum_lab.share_code import to_code
 from momentum_lab.summary import Summary, summarize
@@ -147,7 +148,7 @@ def _pushes(run: FinishedRun) -> str:
             f"{push.force or 0.0:.1f} N",
             f"{1e3 * push.duration:.0f} ms",
             f"{push.direction_deg:g}°",
-            "through the CoM" if push.height is None else f"at {push.height:g} m",
+            _where(push),
             push.body or "trunk",
             f"{push.impulse:.2f} N s",
         )
@@ -155,6 +156,13 @@ def _pushes(run: FinishedRun) -> str:
     ]
     head = ("start", "force", "for", "direction", "where", "body", "impulse")
     return _table([head, *rows], headed=True) if rows else "<p>None.</p>"
+
+
+def _where(push: Push) -> str:
+    if push.point is not None:
+        x, y, z = push.point
+        return f"at ({x:g}, {y:g}, {z:g}) m of the body"
+    return "through the CoM" if push.height is None else f"at {push.height:g} m"
 
 
 def _gains(run: FinishedRun) -> str:

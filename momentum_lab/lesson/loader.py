@@ -226,7 +226,8 @@ def _names(lesson: Lesson) -> Iterator[tuple[str, tuple[str, ...]]]:
         match part:
             case Play(run=run, controls=controls, beside=beside):
                 yield run, runs
-                yield beside or run, runs
+                if beside is not None:
+                    yield beside, tuple(other for other in runs if other != run) or ("another run",)
                 if run in runs:
                     yield from ((control, _controls(lesson.runs[run])) for control in controls)
             case Explain(run=run) | Stands(run=run) | Falls(run=run):

@@ -114,7 +114,8 @@ class Play:
         text: what to look at, not what to click.
         run: the run it starts with.
         controls: what can be changed: `CONTROLS` or gains of the run's controller.
-        beside: a second run, shown beside the first.
+        beside: a second run, played and shown beside the first. Where both differ only in controller, priority or
+            gains, both are there for a hand, too.
     """
 
     text: str
@@ -208,3 +209,9 @@ class Lesson:
     def first_run(self) -> Run:
         """The run of the first step that is played."""
         return self.runs[next(step.run for step in self.steps if isinstance(step, Play))]
+
+    def beside(self, label: str) -> str | None:
+        """The run that is played and shown beside a run; None: it is shown alone."""
+        return next(
+            (step.beside for step in self.steps if isinstance(step, Play) and step.run == label), None
+        )

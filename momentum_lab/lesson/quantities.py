@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from momentum_lab.experiments.measured import ground_force, momentum_slope
+from momentum_lab.experiments.measured import ground_force, momentum_slope, push_end
 from momentum_lab.lesson.equation import Symbol
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.session import Session
@@ -32,6 +32,29 @@ def weight(session: Session) -> float:
 def granted_force_up(session: Session) -> np.ndarray:
     """The vertical force that the controller counts on (n,), N: f_z = dl_z + m g (Eq. 2)."""
     return recorded("momentum_rate_admissible", 2)(session) + weight(session)
+
+
+def push_force(session: Session) -> float:
+    """Force of the first push, N."""
+    return session.pushes[0].force or 0.0
+
+
+def toes(session: Session) -> float:
+    """The front edge of the feet where they stood first, x, m."""
+    return float(session.recording.column("sole_pose")[0, :, 0].mean() + session.robot.soles[0].upper[0])
+
+
+def pendulum_rate(session: Session) -> np.ndarray:
+    """How fast a pendulum as high as the CoM falls (n,), 1/s: omega = sqrt(g / r_z)."""
+    return np.asarray(np.sqrt(GRAVITY / session.recording.column("com")[:, 2]))
+
+
+def capture_rate(session: Session) -> np.ndarray:
+    """Rate of the capture point from differences over a tick, m/s, until the ground carries less than 0.9 m g."""
+    rate = np.diff(session.recording.column("capture_point")[:, 0]) / session.scenario.timestep
+    light = ground_force(session)[:, 2] <= 0.9 * weight(session)
+    after = np.flatnonzero(light & (session.recording.column("time") > push_end(session)))
+    return np.asarray(rate[: int(after[0])] if len(after) else rate)
 
 
 COM_X = Symbol(recorded("com", 0), "m", "CoM, forward", ".4f")
@@ -68,3 +91,5 @@ ROLLING = Symbol(
     "rate of angular momentum about x, from the links",
     ".1f",
 )
+PENDULUM_RATE = Symbol(pendulum_rate, "1/s", "the pendulum's rate", ".2f")
+CAPTURE_RATE = Symbol(capture_rate, "m/s", "rate of the capture point", ".3f")

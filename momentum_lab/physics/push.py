@@ -20,6 +20,7 @@ MAX_DURATION = 10.0
 MAX_HEIGHT = 3.0
 MAX_SPEED = 5.0
 MAX_START = 3600.0
+MAX_REACH = 3.0
 
 Shape = Literal["rectangle", "half-sine"]
 _MEAN_OF_SHAPE = {"rectangle": 1.0, "half-sine": 2.0 / math.pi}
@@ -32,6 +33,7 @@ _RANGES = {
     "start": (0.0, MAX_START, "s"),
     "height": (_ABOVE_ZERO, MAX_HEIGHT, "m"),
 }
+_Reach = Annotated[float, msgspec.Meta(ge=-MAX_REACH, le=MAX_REACH)]
 
 
 class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -48,8 +50,10 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             to its left; degrees.
         start: when it begins, s of simulated time.
         height: height of its line of action above the ground, m; None: through the centre of mass.
-        body: name of the pushed body in the robot's file; None: the trunk.
+        body: name of the pushed body in the robot's file, or of any link of its URDF; None: the trunk.
         shape: a rectangle in time, or a half sine.
+        point: where it acts on the pushed body (3,), in that body's frame, m; it has no `height` then. None: on
+            the vertical through the centre of mass.
     """
 
     force: Annotated[float, msgspec.Meta(ge=0.0, le=MAX_FORCE)] | None = None
@@ -60,6 +64,7 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     height: Annotated[float, msgspec.Meta(gt=0.0, le=MAX_HEIGHT)] | None = None
     body: str | None = None
     shape: Shape = "rectangle"
+    point: tuple[_Reach, _Reach, _Reach] | None = None
 
     @property
     def direction(self) -> np.ndarray:
@@ -96,6 +101,12 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             if value is not None and not low <= value <= high:
                 lowest = "above 0" if low == _ABOVE_ZERO else f"from {low:g}"
                 raise InputError(field, value, f"{lowest} to {high:g} {unit}")
+        if self.point is None:
+            return
+        if self.height is not None:
+            raise InputError("push", f"height {self.height} and point {self.point}", "one of the two")
+        if len(self.point) != 3 or not all(abs(x) <= MAX_REACH for x in self.point):
+            raise InputError("point", self.point, f"three numbers from {-MAX_REACH:g} to {MAX_REACH:g} m")
 
     def delivered(self, time: float) -> float:
         """Impulse delivered from the start of the push until `time`, N s."""
@@ -108,8 +119,16 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         """Mean force over [time, time + timestep], N: the impulse is exact whatever the step."""
         return (self.delivered(time + timestep) - self.delivered(time)) / timestep
 
-    def point_of_action(self, dynamics: Dynamics) -> np.ndarray:
-        """A point of the line of action in the world (3,), m: over the CoM at the push's height."""
+    def point_of_action(self, dynamics: Dynamics, placement: pin.SE3) -> np.ndarray:
+        """A point of the line of action in the world (3,), m: the push's own, or over the CoM at its height.
+
+        Args:
+            dynamics: the robot's state with everything computed.
+            placement: of the pushed body in the world.
+        """
+        if self.point is not None:
+            fixed: np.ndarray = placement.act(np.array(self.point))
+            return fixed
         point = dynamics.com_in_world.copy()
         if self.height is not None:
             point[2] = dynamics.sole_position[:, 2].min() + self.height
@@ -155,11 +174,11 @@ def apply_pushes(
     wrench, generalized = np.zeros(6), np.zeros(robot.nv)
     for push in active:
         force = push.mean_force(time, timestep) * push.direction
-        point = push.point_of_action(dynamics)
         frame = pushed_frame(robot, push)
         jacobian = pin.computeFrameJacobian(
             robot.model, data, dynamics.state.q, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
         )
+        point = push.point_of_action(dynamics, data.oMf[frame])
         lever = point - data.oMf[frame].translation
         wrench += np.concatenate([force, cross(point, force)])
         generalized += jacobian.T @ np.concatenate([force, cross(lever, force)])
@@ -167,5 +186,16 @@ def apply_pushes(
 
 
 def pushed_frame(robot: RobotModel, push: Push) -> int:
-    """Index of the frame a push acts on."""
-    return robot.trunk if push.body is None else robot.frame(robot.spec.push_bodies[push.body])
+    """Index of the frame a push acts on.
+
+    Raises:
+        InputError: the robot has no such body.
+    """
+    if push.body is None:
+        return robot.trunk
+    link = robot.spec.push_bodies.get(push.body, push.body)
+    if not robot.model.existFrame(link, pin.FrameType.BODY):
+        raise InputError(
+            "body", push.body, f"one of {', '.join(robot.spec.push_bodies)}, or a link of the robot"
+        )
+    return robot.frame(link)

@@ -25,6 +25,10 @@ class FakeHandle:
 
     on_click = on_upload = on_update
 
+    def on_drag(self, button: str, *, modifier: str) -> Callable[[Any], None]:
+        self.dragged = (button, modifier)
+        return self.callbacks.append
+
     def remove(self) -> None:
         self.removed = True
 

@@ -19,7 +19,7 @@ def test_a_picture_that_comes_in_two_windows_counts_once():
 
 def test_simulated_time_is_read_from_the_page():
     received = Received()
-    content = '<div class="lab n dim">simulated time <b>12.34 s</b> · 1.00 × real time</div>'
+    content = '<div class="lab n dim">simulated time \u2007<b>12.34 s</b> · 1.00 × real time</div>'
     received.take([{"type": "GuiUpdateMessage", "uuid": "x", "updates": {"content": content}}])
     assert received.told[1] == 12.34
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from momentum_lab.app.classroom import Classroom, RunPlayback
+from momentum_lab.app.classroom import Classroom
+from momentum_lab.app.lesson_runs import RunPlayback
 from momentum_lab.app.lesson_wire import LeaveLesson, OpenLesson, PlayRun, ShowRun
 from momentum_lab.app.playback import Playback
 from momentum_lab.errors import InputError

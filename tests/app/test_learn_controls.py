@@ -21,11 +21,13 @@ from momentum_lab.lesson.parts import CONTROLS
 from momentum_lab.scenario import Scenario, changed, load_scenario
 from tests.app.fakes import FakeGui
 
+SHELF = RobotShelf()  # meshes take a second to load
+
 
 class Desk:
     def __init__(self, *names: str, scenario: str = "fig7") -> None:
         self.gui, self.posted = FakeGui(), []
-        robot = RobotShelf().get("g1")
+        robot = SHELF.get("g1")
         truth = Playback(Scenario("stand", robot="g1"), robot.model).truth(1.0)
         run = changed(load_scenario(scenario), robot="g1")
         self.push = run.pushes[0].sized_for(robot.model.mass) if run.pushes else None

@@ -29,10 +29,29 @@ def test_prediction_comes_first() -> None:
 
 
 def test_a_step_plays_its_own_runs_and_those_that_no_other_plays() -> None:
-    assert Walk(RECORD, place=2).runs_to_play() == ("b", "c", "a")
+    """The run beside another one is played with it, not after it."""
+    assert Walk(RECORD, place=2).runs_to_play() == ("b", "a")
     two = msgspec.structs.replace(RECORD, steps=(PLAY, StepRecord("play", "And now.", run="a")))
-    assert Walk(two).runs_to_play() == ("b", "c")
+    assert Walk(two).runs_to_play() == ("b",)
     assert Walk(two, place=1).runs_to_play() == ("a",)
+
+
+def test_a_step_has_been_seen_with_all_that_it_shows() -> None:
+    for seen, everything in ((("a", "b"), False), (("a", "b", "c"), True)):
+        walk = Walk(RECORD, 2, news=LessonNews(seen=seen))
+        assert walk.all_seen == everything
+        walk.place = 3
+        assert walk.measured_in_sight == everything
+
+
+def test_a_later_prediction_is_open_until_its_own_run_is_seen() -> None:
+    """Two questions, each with a run of its own: the first run says nothing about the second question."""
+    first, second = StepRecord("play", "Watch.", run="a", beside="b"), StepRecord("play", "Watch.", run="c")
+    steps = (CHOICE, first, COMPARE, NUMBER, second, COMPARE)
+    walk = Walk(msgspec.structs.replace(RECORD, steps=steps), news=LessonNews(seen=("b",)))
+    assert [walk.frozen for walk.place in (0, 3)] == [True, False]
+    walk.news = LessonNews(seen=("a", "b", "c"))
+    assert [walk.frozen for walk.place in (0, 3)] == [True, True]
 
 
 def test_the_run_on_stage_is_the_last_that_was_played() -> None:

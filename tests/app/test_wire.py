@@ -38,6 +38,8 @@ EVENTS = [
     events.SetMismatch("mass_error", -0.1),
     events.ApplyPush(Push(force=217.0, body="head", shape="half-sine")),
     events.ApplyPushes((Push(force=217.0, start=0.2), Push(velocity_change=0.1))),
+    events.HoldPush(Push(force=50.0, body="left_hand", point=(0.0, 0.1, -0.2))),
+    events.LetGo(),
     events.Reset(),
     events.Play(),
     events.Pause(),

@@ -30,6 +30,8 @@ FLAGS = (
 )
 # Viser acknowledges a slider that a hand has just moved; a page that is replaced meanwhile has removed it.
 CROSSED = "Tried to update non-existent component"
+# Viser keeps a drag in the scene from selecting text, in a listener that Chromium has been told will not.
+PASSIVE = "Unable to preventDefault inside passive event listener"
 SERVE = """
 import sys
 from pathlib import Path
@@ -103,7 +105,7 @@ def open_page(browser: Browser) -> Iterator[Opener]:
     opened: list[Page] = []
 
     def note(message: ConsoleMessage) -> None:
-        if message.type == "error" and not message.text.startswith(CROSSED):
+        if message.type == "error" and not message.text.startswith((CROSSED, PASSIVE)):
             errors.append(message.text)
 
     def open_page(url: str, width: int = 1280, height: int = 800) -> LabPage:

@@ -65,9 +65,10 @@ class LabPage:
         tab = self.page.get_by_role("tab", name=name)
         for _ in range(5):
             self.press(key)
-            self.page.wait_for_timeout(2000)
-            if tab.get_attribute("aria-selected") == "true":
-                return
+            for _ in range(10):
+                if tab.get_attribute("aria-selected") == "true":
+                    return
+                self.page.wait_for_timeout(200)
         expect(tab).to_have_attribute("aria-selected", "true")
 
     def click(self, name: str) -> None:

@@ -103,7 +103,7 @@ def test_a_push_a_slider_a_fall_and_a_reload(served: Served, open_page: Opener) 
 
 def test_the_second_tab_has_a_robot_of_its_own(served: Served, open_page: Opener) -> None:
     first = open_page(served.url).until_furnished()
-    before = children(served.process.pid)
+    before = settled_children(served.process.pid)
     second = open_page(served.url).until_furnished()
     (worker,) = children(served.process.pid) - before
     second.press("p")
@@ -186,6 +186,17 @@ def test_pictures_for_people(served_for_people: Served, open_page: Opener) -> No
     lab.click("Feet")
     lab.page.wait_for_timeout(2000)
     lab.save(OUTPUT / "feet.png")
+
+
+def settled_children(pid: int) -> set[int]:
+    """All processes below a process, once none has come or gone for a second: tabs of other tests have closed."""
+    last, since = children(pid), time.monotonic()
+    end = since + 20.0
+    while time.monotonic() - since < 1.0 and time.monotonic() < end:
+        time.sleep(0.05)
+        if (now := children(pid)) != last:
+            last, since = now, time.monotonic()
+    return last
 
 
 def pause_in_saturation(lab) -> None:

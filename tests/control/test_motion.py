@@ -5,9 +5,10 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
-from momentum_lab.control.motion import MOTIONS, MovingGoal
+from momentum_lab.control.motion import MOTIONS, MovingGoal, reach_of
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import InputError, ScenarioError
 from momentum_lab.events import SetAngularGoal, SetMotion
@@ -18,8 +19,10 @@ from tests.conftest import assert_close
 from tests.control.situations import BOTH, goal, home
 
 DT = 1e-3
-STANCE = {"kick": (0,), "arm-swing": BOTH, "cat-left": BOTH, "cat-right": BOTH}
-ON_THE_GROUND = ("kick", "arm-swing")
+STANCE = {"kick": (0,), "reach": BOTH, "arm-swing": BOTH, "cat-left": BOTH, "cat-right": BOTH}
+ON_THE_GROUND = ("kick", "reach", "arm-swing")
+# An instant at which all its joints move, s.
+MIDWAY = {"kick": 0.675, "reach": 0.8, "arm-swing": 2.0}
 IN_THE_AIR = ("cat-left", "cat-right")
 COURSES = [(name, table) for name, motion in MOTIONS.items() for table in motion.courses]
 
@@ -64,6 +67,22 @@ def test_only_joints_of_the_robots_file_move(robot, name):
     assert 0 < np.count_nonzero(reach) <= 2 * len(patterns)
     assert set(np.abs(reach[reach != 0.0])) == {abs(angle) for angle in patterns.values()}
     assert dataclasses.replace(moved, posture=still.posture).com is still.com
+
+
+def test_the_reaching_hand_goes_forward(robot):
+    """By a good part of the arm's length, and its elbow straightens."""
+    model, data = robot.model, robot.model.createData()
+    hand = model.getFrameId(robot.spec.push_bodies["right_hand"])
+    q = home(robot).state.q.copy()
+    places = []
+    for way in (0.0, 1.0):
+        pin.framesForwardKinematics(
+            model, data, robot.integrate(q, np.append(np.zeros(6), way * reach_of(robot, "reach")[0]))
+        )
+        places.append(data.oMf[hand].translation.copy())
+    forward, _, up = places[1] - places[0]
+    assert forward > 0.2 * robot.at(State(q, np.zeros(robot.nv))).com_in_world[2]
+    assert 0.0 < up < forward
 
 
 @pytest.mark.parametrize("name", IN_THE_AIR)
@@ -123,14 +142,15 @@ def test_the_reference_goal_is_the_motions_own_momentum(robot, name):
     assert_close(reference.angular_momentum(40.0), reference.angular_momentum(40.0 + period), 1e-12)
     # With everything but the joints of the motion held, k would be A_G v; the body gives way to it a little.
     dynamics = home(robot, STANCE[name])
-    time = 0.5 + (0.25 * 0.7 if name == "kick" else 1.5)
-    v = np.concatenate([np.zeros(6), MOTIONS[name].courses[name](time)[1] * zero.reach[0]])
+    v = np.concatenate([np.zeros(6), MOTIONS[name].courses[name](MIDWAY[name])[1] * zero.reach[0]])
     alone = robot.at(State(dynamics.state.q, v)).momentum[3:]
-    assert reference.angular_momentum(time) @ alone > 0.0
+    assert reference.angular_momentum(MIDWAY[name]) @ alone > 0.0
 
 
 @pytest.mark.parametrize("controller", CONTROLLERS)
-@pytest.mark.parametrize(("name", "stance", "ticks"), [("kick", ("left",), 1200), ("arm-swing", (), 1800)])
+@pytest.mark.parametrize(
+    ("name", "stance", "ticks"), [("kick", ("left",), 1200), ("reach", (), 1950), ("arm-swing", (), 1800)]
+)
 def test_every_controller_follows_smoothly(robot, controller, name, stance, ticks):
     """The joints get there, the robot stands, and no torque jumps by a tenth of its limit."""
     session = Session(
@@ -172,7 +192,7 @@ def test_a_motion_begins_and_ends_in_mid_run_without_a_jump(robot):
 
 def test_what_cannot_be_done_is_said(talos):
     with pytest.raises(
-        InputError, match=r"^motion: got dance; allowed: one of kick, arm-swing, cat-left, cat-right$"
+        InputError, match=r"^motion: got dance; allowed: one of kick, reach, arm-swing, cat-left, cat-right$"
     ):
         Session(Scenario("m", motion="dance"), talos)
     with pytest.raises(

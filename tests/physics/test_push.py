@@ -93,10 +93,10 @@ def test_generalized_forces_do_the_work_of_the_force(robot, rng):
         dynamics = robot.at(state)
         push = Push(force=FORCE, direction_deg=33.0, height=1.1, start=0.0, body=body)
         applied = apply_pushes(robot, robot.model.createData(), dynamics, (push,), 0.0, 1e-3)
-        point = push.point_of_action(dynamics)
         link = robot.trunk if body is None else robot.frame(robot.spec.push_bodies[body])
         data = robot.model.createData()
         pin.framesForwardKinematics(robot.model, data, state.q)
+        point = push.point_of_action(dynamics, data.oMf[link])
         fixed_to_link = data.oMf[link].actInv(point)
         places = []
         for eps in (-1e-6, 1e-6):

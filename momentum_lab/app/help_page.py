@@ -1,0 +1,47 @@
+"""The page of help: every key, what there is to see, and what a keyboard or a screen reader can do here."""
+
+from __future__ import annotations
+
+HELP = """
+| key | |
+|---|---|
+| **P** | push, as the Push tab or the open lesson says |
+| **F** | what would this push do? |
+| **K** | play or pause |
+| **J** · **L** | step 1 ms · step 20 ms |
+| **R** | stand up again |
+| **B** | go on from the instant you look at, with other gains if you like |
+| **M** · **N** | keep this run as A · the same pushes again |
+| **G** | show or hide A |
+| **1** **2** **3** **4** **5** | the tabs Push, Control, View, Runs, Share |
+| **I** · **U** | next step · previous step of a lesson (*Learn* tab, left) |
+| **X** | end the demonstration; so does any touch |
+| **H** | this help |
+
+All of them, and more, are in the list that Ctrl+K opens. Space and arrows stay with the widgets.
+
+The robot stands on its own; you push it. The controller moves the **CoP** (◆) under the feet to bring the
+**CoM** (●) back. Where the safe border of the feet stops the CoP, the ground cannot give both goals: either the
+body turns (linear momentum is kept) or the CoM gives way (angular momentum is kept). The *priority* slider of the
+Control tab decides.
+
+The line from the CoM to the **CMP** (▲) is parallel to the ground reaction force. The bar from CoP to CMP is the
+lever with which that force turns the body: the longer it is, the faster angular momentum changes.
+
+Drag to turn the picture, right-drag to move it, scroll to come closer. **Shift + drag** on the robot pulls it
+there: the arrow shows the force, letting go pushes (*pulse*) or ends the push (*hold*, in the Push tab).
+
+**Without a mouse.** Tab and Shift+Tab go from widget to widget, arrows move a slider, Home and End take it to its
+ends. Once the picture has the focus, W, A, S, D, Q and E move the camera; the View tab has four fixed views.
+
+**With a screen reader.** Sliders say their name, value and unit; the status is read out when it changes. The 3D
+picture and the plots have a name but cannot be read: the status, the Runs table and `momentum-lab run --json` have
+their numbers. A hint of a widget shows only under a mouse, and panels are moved and resized only with one.
+"""
+
+
+def keys_in_help() -> set[str]:
+    """The keys that the page explains."""
+    rows = [line for line in HELP.splitlines() if line.startswith("| **")]
+    cells = [row.split("|")[1] for row in rows]
+    return {word.strip("* ") for cell in cells for word in cell.replace("·", " ").split()}

@@ -1,0 +1,249 @@
+"""A hand in the picture: grab, pull, let go; what is posted, shown and refused."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from types import SimpleNamespace
+
+import msgspec
+import numpy as np
+import pytest
+
+from momentum_lab.app import hand as room
+from momentum_lab.app.hand import Hand, Note, Reach
+from momentum_lab.app.pull import Scale
+from momentum_lab.app.push_panel import PushPanel
+from momentum_lab.app.robot_scene import RobotScene
+from momentum_lab.app.robots import LoadedRobot
+from momentum_lab.app.view_panel import ViewSettings
+from momentum_lab.events import ApplyPush, ApplyPushes, HoldPush, LetGo
+from momentum_lab.recording import Layout
+from momentum_lab.robot.geometry import LinkMesh
+from momentum_lab.robot.posture import standing_posture
+from tests.app.fakes import FakeClient
+from tests.conftest import assert_close
+
+TRIANGLE = (np.eye(3, dtype=np.float32), np.array([[0, 1, 2]], dtype=np.uint32))
+SIZE = 0.877
+GRABBED = np.array([0.05, 0.0, 1.1])
+ABOVE = (0.0, 0.0, 6.0)
+
+
+class Desk:
+    """A tab with one robot, a push panel and a hand; pushes go nowhere."""
+
+    def __init__(self, robot, offset=(0.0, 0.0, 0.0)) -> None:
+        self.client = FakeClient()
+        trunk = robot.model.frames[robot.trunk].parentJoint
+        loaded = LoadedRobot(robot, (LinkMesh(trunk, *TRIANGLE, (0.5, 0.5, 0.5)),), Layout.of(robot))
+        self.posted, self.told = [], []
+        self.panel = PushPanel(self.client.gui, self.posted.append, self.told.append, lambda: None)
+        self.panel.set_robot(loaded)
+        self.pushes: tuple = ()
+        settings = ViewSettings()
+        self.hand = Hand(
+            self.client, self.panel, settings, self.posted.append, self.told.append, lambda: self.pushes
+        )
+        body = RobotScene(self.client, loaded, standing_posture(robot))
+        self.reach = Reach(body, loaded, SIZE, np.array(offset))
+        self.trunk = trunk
+        self.scale = Scale.of(robot, SIZE, settings.arrow_scale, self.panel.strongest)
+
+    def drag(self, phase: str, x: float, y: float, **changes) -> None:
+        """One event of a hand that is so far from where it has grabbed, m."""
+        start = GRABBED + self.reach.offset
+        note = Note(self.reach, self.trunk, phase, tuple(start), tuple(start + [x, y, 0.0]), ABOVE)
+        for name, value in changes.items():
+            object.__setattr__(note, name, value)
+        self.hand.note(note)
+        self.hand.act()
+
+    def set(self, label: str, value: object) -> None:
+        self.client.gui.widgets[label].set_by_person(value)
+
+    @property
+    def label(self):
+        return self.client.scene.nodes["/hand/label"]
+
+
+@pytest.fixture
+def desk(talos) -> Desk:
+    return Desk(talos)
+
+
+@pytest.fixture(autouse=True)
+def at_once(monkeypatch):
+    monkeypatch.setattr(room, "_SETTLED", 0.0)
+
+
+def test_letting_go_pushes_with_the_force_of_the_arrow(desk):
+    desk.drag("start", 0.01, 0.0)
+    desk.drag("update", 0.1, 0.0)
+    desk.drag("update", 0.0, 0.2)
+    force = 0.2 * desk.scale.newtons_per_metre
+    assert desk.label.text == f"{force:.0f} N on trunk"
+    assert_close(desk.label.position, GRABBED + [0.0, 0.2, 0.0], 1e-6)
+    assert desk.posted == []
+    desk.drag("end", 0.0, 0.2)
+    (event,) = desk.posted
+    push = event.push
+    assert (push.force, push.direction_deg, push.duration) == (round(force), 90.0, 0.1)
+    assert push.body == "trunk"
+    assert push.point is not None
+    assert push.height is None
+    assert desk.label.removed
+
+
+def test_the_panel_shows_the_push_and_gives_it_again(desk):
+    desk.set("duration (ms)", 250.0)
+    desk.drag("start", 0.2, -0.2)
+    desk.drag("end", 0.2, -0.2)
+    (event,) = desk.posted
+    assert event.push.duration == 0.25
+    assert desk.panel.push() == event.push
+    desk.panel.apply_again()
+    desk.panel.apply()
+    assert desk.posted == [event] * 3
+    desk.set("force (N)", 50.0)  # it can be edited, too
+    desk.panel.apply()
+    assert desk.posted[-1] == ApplyPush(msgspec.structs.replace(event.push, force=50.0))
+
+
+def test_another_body_has_no_grabbed_point(desk):
+    desk.drag("start", 0.2, 0.0)
+    desk.drag("end", 0.2, 0.0)
+    desk.set("body", "head")
+    assert desk.panel.push().point is None
+    assert not desk.client.gui.widgets["where it was grabbed"].visible
+
+
+def test_back_where_it_began_there_is_no_push(desk):
+    desk.drag("start", 0.2, 0.0)
+    desk.drag("update", 0.005, 0.0)
+    assert desk.label.text == "let go: no push"
+    desk.drag("end", 0.005, 0.0)
+    assert desk.posted == []
+
+
+def test_no_hand_is_stronger_than_the_slider(desk):
+    desk.drag("start", 50.0, 0.0)
+    assert desk.label.text == f"{desk.panel.strongest:.0f} N on trunk, the most"
+    desk.drag("end", 50.0, 0.0)
+    assert desk.posted[0].push.force == desk.panel.strongest
+
+
+def test_a_held_push_follows_the_hand_and_ends_with_it(desk):
+    desk.set("by hand", "hold")
+    desk.drag("start", 0.1, 0.0)
+    desk.drag("update", 0.1002, 0.0)  # a hand that trembles
+    desk.drag("update", 0.2, 0.0)
+    desk.drag("update", 0.0, 0.2)
+    desk.drag("end", 0.0, 0.2)
+    assert [type(event) for event in desk.posted] == [HoldPush, HoldPush, HoldPush, LetGo]
+    pushes = [event.push for event in desk.posted[:-1]]
+    assert [push.direction_deg for push in pushes] == [0.0, 0.0, 90.0]
+    assert pushes[1].force == pytest.approx(2.0 * pushes[0].force, abs=0.02 * desk.panel.strongest)
+    assert all(push.point == pushes[0].point for push in pushes)
+
+
+def test_what_was_held_can_be_repeated_piece_by_piece(desk):
+    desk.set("by hand", "hold")
+    desk.drag("start", 0.1, 0.0)
+    desk.drag("update", 0.2, 0.0)
+    pieces = [event.push for event in desk.posted]
+    desk.pushes = tuple(
+        msgspec.structs.replace(piece, start=start, duration=1.5)
+        for piece, start in zip(pieces, (3.0, 4.5), strict=True)
+    )
+    desk.drag("end", 0.2, 0.0)
+    desk.panel.apply_again()
+    (repeated,) = [event for event in desk.posted if isinstance(event, ApplyPushes)]
+    assert [push.start for push in repeated.pushes] == [0.0, 1.5]
+    assert [push.force for push in repeated.pushes] == [push.force for push in pieces]
+    assert desk.panel.push().impulse == pytest.approx(sum(p.impulse for p in desk.pushes), rel=0.01)
+    desk.set("by hand", "pulse")
+    desk.drag("start", 0.1, 0.0)
+    desk.drag("end", 0.1, 0.0)
+    assert desk.posted[-1].push.duration == 0.1  # and not the three seconds of what was held
+
+
+def test_in_a_pause_a_hold_would_last_no_time_and_is_a_pulse(desk):
+    desk.set("by hand", "hold")
+    desk.hand.playing = False
+    desk.drag("start", 0.2, 0.0)
+    assert desk.label.text.endswith("waits for play")
+    desk.drag("end", 0.2, 0.0)
+    assert [type(event) for event in desk.posted] == [ApplyPush]
+
+
+def test_the_robot_beside_the_first_is_grabbed_where_it_is_drawn(desk, talos):
+    beside = Desk(talos, offset=(0.3, 1.2, 0.0))
+    for each in (desk, beside):
+        each.drag("start", 0.2, 0.0)
+        each.drag("end", 0.2, 0.0)
+    assert beside.posted == desk.posted
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"start": (math.nan, 0.0, 0.0)},
+        {"end": (math.inf, 0.0, 0.0)},
+        {"end": "far"},
+        {"eye": (0.0, 0.0, math.nan)},
+        {"eye": None},
+    ],
+)
+def test_what_a_browser_makes_up_is_told_and_no_push(desk, changes):
+    desk.drag("start", 0.2, 0.0)
+    desk.drag("update", 0.2, 0.0, **changes)
+    desk.drag("end", 0.2, 0.0)
+    assert desk.posted == []
+    assert "allowed:" in desk.told[0]
+    assert desk.label.removed
+
+
+def test_a_hold_that_goes_wrong_ends(desk):
+    desk.set("by hand", "hold")
+    desk.drag("start", 0.2, 0.0)
+    desk.drag("update", math.nan, 0.0)
+    assert [type(event) for event in desk.posted] == [HoldPush, LetGo]
+
+
+@pytest.mark.parametrize(("label", "value"), [("by hand", "throw"), ("duration (ms)", math.nan)])
+def test_what_no_widget_offers_is_told_and_no_push(desk, label, value):
+    desk.client.gui.widgets[label].value = value
+    desk.drag("start", 0.2, 0.0)
+    desk.drag("end", 0.2, 0.0)
+    assert desk.posted == []
+    assert label.split()[0] in desk.told[0]
+
+
+def test_moves_and_ends_of_nothing_are_nothing(desk):
+    desk.drag("update", 0.2, 0.0)
+    desk.drag("end", 0.2, 0.0)
+    assert (desk.posted, desk.told) == ([], [])
+
+
+def test_only_shift_and_the_left_button_grab_and_events_stay_in_order(desk):
+    desk.hand.reach(desk.reach)
+    (mesh,) = [node for node in desk.client.scene.nodes.values() if node.method == "add_mesh_simple"]
+    assert mesh.dragged == ("left", "shift")
+
+    async def drag() -> None:
+        camera = SimpleNamespace(position=ABOVE)
+        for phase, x in (("start", 0.01), *(("update", 0.002 * i) for i in range(50)), ("end", 0.2)):
+            await mesh.callbacks[0](
+                SimpleNamespace(
+                    client=SimpleNamespace(camera=camera),
+                    phase=phase,
+                    start_position=tuple(GRABBED),
+                    end_position=tuple(GRABBED + [x, 0.0, 0.0]),
+                )
+            )
+        await asyncio.get_running_loop().shutdown_default_executor()
+
+    asyncio.run(drag())
+    (event,) = desk.posted
+    assert event.push.force == round(0.2 * desk.scale.newtons_per_metre)
