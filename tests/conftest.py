@@ -32,6 +32,11 @@ ROBOTS = ("talos", "g1")
 STATES_PER_ROBOT = 50
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The only way in which golden pictures change."""
+    parser.addoption("--update-pictures", action="store_true", help="make the golden pictures anew")
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     begin_first(items)
 
