@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import argparse
-import re
-from typing import Any, NoReturn
+from typing import Any
 
 from momentum_lab import __version__
+from momentum_lab.cli.parser import Parser, with_negative_numbers
+from momentum_lab.cli.run_options import (
+    choice_arguments,
+    code_argument,
+    duration_argument,
+    scenario_arguments,
+    tuning_arguments,
+)
 from momentum_lab.cli.values import (
-    ABOVE_ZERO,
-    controlled_directions,
-    gain_setting,
-    mismatch_setting,
     number,
     one_or_all,
     whole_number,
 )
 from momentum_lab.errors import InputError
 from momentum_lab.patience import LEAST_PATIENCE, MOST_PATIENCE, PATIENCE
-from momentum_lab.physics.plate import MAX_FRICTION
-from momentum_lab.physics.push import MAX_DURATION, MAX_FORCE, MAX_HEIGHT
-from momentum_lab.scenario import MAX_SECONDS, MAX_SEED, MIN_SECONDS
 
 COMMANDS = (
     "app",
@@ -62,46 +62,15 @@ def parsed(words: list[str]) -> argparse.Namespace:
         words = ["app", *words]
     elif not first.startswith("-") and first not in COMMANDS:
         raise InputError("command", first, ", ".join(COMMANDS))
-    args, unknown = _parser().parse_known_args(_with_negative_numbers(words))
+    args, unknown = _parser().parse_known_args(with_negative_numbers(words))
     if unknown:
         options = ", ".join(args.options)
         raise InputError("argument", unknown[0], f"{args.usage}; options: {options}")
     return args
 
 
-class _Parser(argparse.ArgumentParser):
-    """A parser whose complaints have the form of every other error, and which knows its options."""
-
-    def __init__(self, **settings: Any) -> None:
-        self.options: list[str] = []
-        super().__init__(allow_abbrev=False, **settings)
-
-    def add_argument(self, *names: Any, **settings: Any) -> argparse.Action:
-        action = super().add_argument(*names, **settings)
-        self.options += [name for name in action.option_strings if name.startswith("--")]
-        return action
-
-    def error(self, message: str) -> NoReturn:
-        """Only missing and superfluous values come here; all other checks are in the types."""
-        argument, _, rule = message.removeprefix("argument ").partition(": ")
-        if "'" in rule:
-            raise InputError(argument, rule.split("'")[1], "the option alone, without a value")
-        raise InputError(argument, "nothing", "a value after it")
-
-
-def _with_negative_numbers(words: list[str]) -> list[str]:
-    """`--push -inf` as `--push=-inf`: argparse takes most negative numbers for options."""
-    joined: list[str] = []
-    for word in words:
-        if joined and re.fullmatch(r"--[a-z-]+", joined[-1]) and re.match(r"-(\.?\d|inf|nan)", word, re.I):
-            joined[-1] += f"={word}"
-        else:
-            joined.append(word)
-    return joined
-
-
-def _parser() -> _Parser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="momentum-lab",
         description="Push a humanoid and watch its momentum. Without a command: the app on 127.0.0.1:8080.",
     )
@@ -162,10 +131,10 @@ def _usage(command: str) -> str:
     return words.get(command, command)
 
 
-def _app_arguments(parser: _Parser) -> None:
+def _app_arguments(parser: Parser) -> None:
     parser.add_argument("--scenario", metavar="S", help="what to start with; otherwise stand")
-    _choice_arguments(parser)
-    _code_argument(parser)
+    choice_arguments(parser)
+    code_argument(parser)
     parser.add_argument(
         "--demo",
         type=number("--demo", LEAST_PATIENCE, MOST_PATIENCE, "s"),
@@ -177,7 +146,7 @@ def _app_arguments(parser: _Parser) -> None:
     _serving_arguments(parser)
 
 
-def _serving_arguments(parser: _Parser) -> None:
+def _serving_arguments(parser: Parser) -> None:
     parser.add_argument("--host", default="127.0.0.1", metavar="H", help="address to serve on")
     parser.add_argument(
         "--port",
@@ -189,38 +158,30 @@ def _serving_arguments(parser: _Parser) -> None:
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser window")
 
 
-def _run_arguments(parser: _Parser) -> None:
-    _scenario_arguments(parser)
+def _run_arguments(parser: Parser) -> None:
+    scenario_arguments(parser)
     parser.add_argument("--out", metavar="FILE", help="save the trace as .npz")
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
 
 
-def _report_arguments(parser: _Parser) -> None:
-    _scenario_arguments(parser)
+def _report_arguments(parser: Parser) -> None:
+    scenario_arguments(parser)
     parser.add_argument("--out", metavar="FILE", help="where the report goes, an .html file")
 
 
-def _record_arguments(parser: _Parser) -> None:
-    _scenario_arguments(parser)
+def _record_arguments(parser: Parser) -> None:
+    scenario_arguments(parser)
     parser.add_argument("--out", metavar="FILE", help="where the recording goes, an .html or .viser file")
 
 
-def _replay_arguments(parser: _Parser) -> None:
+def _replay_arguments(parser: Parser) -> None:
     parser.add_argument("file", nargs="?", default="", metavar="FILE", help="a run file, or a trace.npz")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
-def _scenario_arguments(parser: _Parser) -> None:
-    parser.add_argument("scenario", nargs="?", default="", metavar="SCENARIO", help="a name, or a .toml file")
-    _choice_arguments(parser)
-    _push_arguments(parser)
-    _tuning_arguments(parser)
-    _code_argument(parser)
-
-
-def _limit_arguments(parser: _Parser) -> None:
+def _limit_arguments(parser: Parser) -> None:
     parser.add_argument("scenario", nargs="?", default="stand", metavar="SCENARIO", help="otherwise stand")
-    _choice_arguments(parser)
+    choice_arguments(parser)
     parser.add_argument(
         "--direction",
         type=one_or_all,
@@ -228,113 +189,12 @@ def _limit_arguments(parser: _Parser) -> None:
         metavar="D",
         help="forward, left, backward, right, degrees from forward to the left, or all: every 45 degrees",
     )
-    _duration_argument(parser)
-    _tuning_arguments(parser)
+    duration_argument(parser)
+    tuning_arguments(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
-def _tuning_arguments(parser: _Parser) -> None:
-    """Everything about a run but who is pushed and how."""
-    parser.add_argument(
-        "--priority",
-        type=number("--priority", 0.0, 1.0, "0 keeps linear momentum, 1 angular momentum"),
-        metavar="X",
-        help="which momentum to keep: 0 linear, 1 angular",
-    )
-    parser.add_argument(
-        "--set",
-        type=gain_setting,
-        action="append",
-        default=[],
-        metavar="GAIN=VALUE",
-        help="change a gain; may be repeated",
-    )
-    parser.add_argument(
-        "--seconds",
-        type=number("--seconds", MIN_SECONDS, MAX_SECONDS, "s"),
-        metavar="T",
-        help="how long to simulate, s",
-    )
-    parser.add_argument("--engine", metavar="E", help="which physics: pinocchio, mujoco")
-    parser.add_argument(
-        "--seed", type=whole_number("--seed", 0, MAX_SEED), metavar="N", help="seed of random numbers"
-    )
-
-
-def _push_arguments(parser: _Parser) -> None:
-    parser.add_argument(
-        "--push",
-        type=number("--push", 0.0, MAX_FORCE, "N"),
-        metavar="N",
-        help="one push of this force instead of the scenario's, N",
-    )
-    _duration_argument(parser)
-    parser.add_argument(
-        "--push-direction",
-        type=number("--push-direction", -360.0, 360.0, "degrees"),
-        metavar="DEG",
-        help="where it points: 0 forward, 90 left, degrees",
-    )
-    parser.add_argument(
-        "--push-height",
-        type=number("--push-height", ABOVE_ZERO, MAX_HEIGHT, "m"),
-        metavar="M",
-        help="height of its line of action, m; otherwise through the CoM",
-    )
-
-
-def _duration_argument(parser: _Parser) -> None:
-    parser.add_argument(
-        "--push-duration",
-        type=number("--push-duration", ABOVE_ZERO, MAX_DURATION, "s"),
-        metavar="S",
-        help="how long it lasts, s; 0.1 unless the scenario says otherwise",
-    )
-
-
-def _choice_arguments(parser: _Parser) -> None:
-    parser.add_argument("--robot", metavar="R", help="a name, or a robot's .toml file")
-    parser.add_argument("--controller", metavar="C", help="who keeps the balance")
-    parser.add_argument(
-        "--controlled",
-        metavar="D",
-        type=controlled_directions,
-        help="directions of momentum that are asked for: all, linear+kz, lx+ly, ...",
-    )
-    parser.add_argument("--planner", metavar="P", help="what makes the momentum rates that are asked for")
-    parser.add_argument(
-        "--motion", metavar="M", help="what the robot does: kick, reach, arm-swing, cat-left, ..."
-    )
-    parser.add_argument(
-        "--angular-goal", metavar="G", help="angular momentum asked for: zero, or reference, the motion's own"
-    )
-    parser.add_argument(
-        "--ground-sense", metavar="S", help="how the robot knows a moving ground: told, or felt by its soles"
-    )
-    parser.add_argument(
-        "--friction",
-        metavar="x",
-        type=number("--friction", ABOVE_ZERO, MAX_FRICTION, "Coulomb coefficient of the floor"),
-        help="Coulomb coefficient of the floor",
-    )
-    parser.add_argument(
-        "--mismatch",
-        type=mismatch_setting,
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="let the real robot differ from its model: mass_error=0.1, torque_delay_ms=2; may be repeated",
-    )
-    parser.add_argument(
-        "--preset", metavar="NAME", help="gains by name: soft, chapter-like, stiff, or your own"
-    )
-
-
-def _code_argument(parser: _Parser) -> None:
-    parser.add_argument("--code", metavar="CODE", help="a shared run instead of a scenario")
-
-
-def _lesson_arguments(parser: _Parser) -> None:
+def _lesson_arguments(parser: Parser) -> None:
     parser.add_argument(
         "name", nargs="?", default="", metavar="NAME", help="a lesson's number, file or title"
     )
@@ -345,11 +205,11 @@ def _lesson_arguments(parser: _Parser) -> None:
     _serving_arguments(parser)
 
 
-def _folder_argument(parser: _Parser) -> None:
+def _folder_argument(parser: Parser) -> None:
     parser.add_argument("--lessons", metavar="DIR", help="a folder with lessons of your own")
 
 
-def _figure_arguments(parser: _Parser) -> None:
+def _figure_arguments(parser: Parser) -> None:
     parser.add_argument("name", nargs="?", default="", metavar="NAME", help="which figure, such as fig8")
     parser.add_argument("--robot", metavar="R", help="a name, or a robot's .toml file")
     parser.add_argument(
@@ -357,19 +217,19 @@ def _figure_arguments(parser: _Parser) -> None:
     )
 
 
-def _list_arguments(parser: _Parser) -> None:
+def _list_arguments(parser: Parser) -> None:
     parser.add_argument("kind", nargs="?", default="", metavar="|".join(KINDS), help="what to list")
     parser.add_argument("--controller", metavar="C", default="computed-torque", help="whose gains to list")
     _folder_argument(parser)
     parser.add_argument("--json", action="store_true", help="print a JSON array")
 
 
-def _equations_arguments(parser: _Parser) -> None:
+def _equations_arguments(parser: Parser) -> None:
     parser.add_argument("--robot", default="talos", metavar="R", help="a name, or a robot's .toml file")
     parser.add_argument("--json", action="store_true", help="print a JSON array")
 
 
-def _robot_check_arguments(parser: _Parser) -> None:
+def _robot_check_arguments(parser: Parser) -> None:
     parser.add_argument(
         "robot", nargs="?", default="", metavar="ROBOT", help="a .urdf, a robot's .toml, or the name of one"
     )
@@ -390,7 +250,7 @@ def _two_frames(text: str) -> tuple[str, str]:
     return names[0], names[1]
 
 
-def _bench_arguments(parser: _Parser) -> None:
+def _bench_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--seconds",
         type=number("--seconds", 1.0, _MAX_BENCH_SECONDS, "s"),
