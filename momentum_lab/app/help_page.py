@@ -23,7 +23,8 @@ All of them, and more, are in the list that Ctrl+K opens. Space and arrows stay 
 The robot stands on its own; you push it. The controller moves the **CoP** (◆) under the feet to bring the
 **CoM** (●) back. Where the safe border of the feet stops the CoP, the ground cannot give both goals: either the
 body turns (linear momentum is kept) or the CoM gives way (angular momentum is kept). The *priority* slider of the
-Control tab decides.
+Control tab decides. At 0, too, computed-torque puts angular momentum first when the body runs out of room to turn and
+the capture point is safe.
 
 The line from the CoM to the **CMP** (▲) is parallel to the ground reaction force. The bar from CoP to CMP is the
 lever with which that force turns the body: the longer it is, the faster angular momentum changes.
