@@ -110,7 +110,8 @@ class Demo:
     @property
     def scene(self) -> Scene | None:
         """The scene that is played now."""
-        return self._scenes[self._place] if self._scenes else None
+        with self._lock:
+            return self._scenes[self._place] if self._scenes else None
 
     def touch(self) -> None:
         """Somebody is there: what was before is back at once."""

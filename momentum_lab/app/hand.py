@@ -116,17 +116,28 @@ class Hand:
         self._notes.append(note)
 
     def act(self) -> None:
-        """Do what the notes ask for; of several moves only the last one counts."""
-        with self._acting:
-            while self._notes:
-                note = self._notes.popleft()
-                if note.phase == "update" and self._notes and self._notes[0].phase == "update":
-                    continue
-                try:
-                    self._take(note)
-                except InputError as error:
-                    self._drop()
-                    self._tell(str(error))
+        """Do what the notes ask for, unless another thread is at it: that one does these, too.
+
+        All tabs share a few threads, so none of them may wait here. Whoever has let go of the lock looks for notes
+        once more: what was put down meanwhile is not left behind.
+        """
+        while self._notes and self._acting.acquire(blocking=False):
+            try:
+                self._work_off()
+            finally:
+                self._acting.release()
+
+    def _work_off(self) -> None:
+        """Do all notes; of several moves only the last one counts."""
+        while self._notes:
+            note = self._notes.popleft()
+            if note.phase == "update" and self._notes and self._notes[0].phase == "update":
+                continue
+            try:
+                self._take(note)
+            except InputError as error:
+                self._drop()
+                self._tell(str(error))
 
     def _take(self, note: Note) -> None:
         start, end = finite(note.start, 3, "drag"), finite(note.end, 3, "drag")

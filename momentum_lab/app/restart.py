@@ -15,6 +15,8 @@ from momentum_lab.control.registry import controller_entry
 from momentum_lab.events import (
     ApplyPush,
     ApplyPushes,
+    HoldPush,
+    LetGo,
     LoggedEvent,
     MoveGround,
     Reset,
@@ -31,8 +33,11 @@ from momentum_lab.session import Session
 _BEFORE_PUSH = 0.5
 # Times are sums of time steps, in time steps.
 _ROUNDING = 1e-6
-_PUSHES = (ApplyPush, ApplyPushes)
 _OF_GROUND = (MoveGround, StopGround, SetFriction)
+# What does something to the robot or its ground, and is no choice.
+_ACTING = (ApplyPush, ApplyPushes, *_OF_GROUND)
+# Of an opened run only: a hand that holds something now lets go at no known tick of the new run.
+_OF_A_HAND = (HoldPush, LetGo)
 
 
 def once_more(
@@ -58,9 +63,13 @@ def once_more(
     done = [
         (entry.tick - zero, entry.event) for entry in _done(session) if isinstance(entry.event, _OF_GROUND)
     ]
-    next_ones = [(now, event) for event in waiting]
-    later = [(entry.tick - zero, entry.event) for entry in _until_reset(coming)]
-    acting = [*done, *((tick, event) for tick, event in (*next_ones, *later) if _acts(event))]
+    next_ones = [(now, event) for event in waiting if isinstance(event, _ACTING)]
+    later = [
+        (entry.tick - zero, entry.event)
+        for entry in _until_reset(coming)
+        if isinstance(entry.event, _ACTING + _OF_A_HAND)
+    ]
+    acting = [*done, *next_ones, *later]
     ticks = _too_late(scenario, [push.start for push in session.pushes], [tick for tick, _ in acting])
     pushes = [msgspec.structs.replace(push, start=push.start - ticks * timestep) for push in session.pushes]
     again = changed(with_robot(scenario.robot, session, waiting, beside), pushes=pushes)
@@ -83,11 +92,6 @@ def _done(session: Session) -> Sequence[LoggedEvent]:
 
 def _until_reset(coming: Sequence[LoggedEvent]) -> Iterable[LoggedEvent]:
     return takewhile(lambda entry: not isinstance(entry.event, Reset), coming)
-
-
-def _acts(event: SessionEvent) -> bool:
-    """Whether an event does something to the robot or its ground, and is no choice."""
-    return isinstance(event, _PUSHES + _OF_GROUND)
 
 
 def with_robot(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import threading
 from types import SimpleNamespace
 
 import msgspec
@@ -247,3 +248,26 @@ def test_only_shift_and_the_left_button_grab_and_events_stay_in_order(desk):
     asyncio.run(drag())
     (event,) = desk.posted
     assert event.push.force == round(0.2 * desk.scale.newtons_per_metre)
+
+
+def test_no_thread_waits_for_a_hand_that_is_busy_and_no_note_is_left_behind(desk):
+    """While one thread tells what was wrong another one brings notes: it goes at once, and they are done."""
+    busy, go_on = threading.Event(), threading.Event()
+
+    def tell(_words: str) -> None:
+        busy.set()
+        assert go_on.wait(20.0)
+
+    desk.hand._tell = tell
+    first = threading.Thread(target=desk.drag, args=("start", 0.2, 0.0), kwargs={"eye": None})
+    first.start()
+    assert busy.wait(20.0)
+    second = threading.Thread(target=lambda: (desk.drag("start", 0.1, 0.0), desk.drag("end", 0.2, 0.0)))
+    second.start()
+    second.join(5.0)
+    waited = second.is_alive()
+    go_on.set()
+    first.join(20.0)
+    second.join(20.0)
+    assert not waited
+    assert [type(event) for event in desk.posted] == [ApplyPush]

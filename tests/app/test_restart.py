@@ -9,6 +9,8 @@ from momentum_lab.app.playback import Playback
 from momentum_lab.app.wire import OpenRun
 from momentum_lab.events import (
     ApplyPush,
+    HoldPush,
+    LetGo,
     LoggedEvent,
     MoveGround,
     Reset,
@@ -122,3 +124,13 @@ def test_on_ground_that_moves_by_itself_nothing_comes_sooner():
     playback.take(RunAgain())
     playback.tick(1999)
     np.testing.assert_array_equal(playback.session.recording.rows(), before)
+
+
+def test_what_an_opened_run_will_hold_is_held_in_its_repetition(playback):
+    later = (LoggedEvent(300, HoldPush(PUSH)), LoggedEvent(360, LetGo()))
+    playback.take(OpenRun(Run(Scenario("kept", robot="g1"), later, ticks=600)))
+    playback.tick(100)
+    playback.take(RunAgain())
+    playback.tick(500)
+    (push,) = playback.session.pushes
+    assert (push.start, push.duration, push.force) == pytest.approx((0.3, 0.06, 120.0))

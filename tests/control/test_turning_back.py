@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -93,3 +96,19 @@ def test_legs_that_fold_leave_more_room_forward():
     falling_forward = np.array([0.0, 4.0, 0.0])
     assert urgency((0.0, 0.0), falling_forward, FORWARD) == 0.0
     assert urgency((-0.05, 0.0), 1.4 * falling_forward, FORWARD) > 0.0
+
+
+@pytest.mark.parametrize(("direction", "missing", "axis"), [("sideways", LEFT, 0), ("forward", FORWARD, 1)])
+def test_angular_momentum_takes_precedence_between_the_turns_that_the_readme_names(direction, missing, axis):
+    readme = " ".join((Path(__file__).parents[2] / "README.md").read_text().split())
+    found = re.search(rf"([\d.]+) to ([\d.]+) rad {direction}", readme)
+    assert found
+    least, most = map(float, found.groups())
+    # Gamma_11 = 5 / s: a body that spins at 5 theta will have turned by theta.
+    spin = np.zeros(3)
+    spin[axis] = 5.0 if axis else -5.0
+    behind = (-0.15, 0.0) if axis else (0.0, 0.0)
+    assert urgency(behind, 0.98 * least * spin, missing) == 0.0
+    assert 0.0 < urgency(behind, 1.02 * least * spin, missing) < 0.2
+    assert 0.8 < urgency(behind, 0.98 * most * spin, missing) < 1.0
+    assert urgency(behind, 1.02 * most * spin, missing) == 1.0
