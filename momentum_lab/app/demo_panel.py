@@ -39,8 +39,14 @@ class DemoPanel:
         self._wait.on_update(lambda _: self._set())
 
     def _set(self) -> None:
-        on, wait = bool(self._switch.value), float(self._wait.value)
+        on, wait = bool(self._switch.value), _patience(self._wait.value)
         self._wait.disabled = not on
-        wait = min(max(wait, LEAST_PATIENCE), MOST_PATIENCE) if math.isfinite(wait) else PATIENCE
         self._demo.patience = wait if on else None
         self._demo.touch()
+
+
+def _patience(value: object) -> float:
+    """A browser's number as one that can be asked for, s; the usual one for what is none."""
+    if not isinstance(value, int | float) or not math.isfinite(value):
+        return PATIENCE
+    return min(max(float(value), LEAST_PATIENCE), MOST_PATIENCE)
