@@ -21,7 +21,7 @@ from momentum_lab.app.link import warm_up
 from momentum_lab.app.profile import NORMAL, RenderProfile
 from momentum_lab.app.quiet import quiet
 from momentum_lab.app.robots import RobotShelf
-from momentum_lab.app.visitor import Visitor
+from momentum_lab.app.visitor import FirstPose, Visitor
 from momentum_lab.errors import ServerError
 from momentum_lab.robot.catalog import robot_names
 from momentum_lab.run_file import Run, as_run
@@ -67,8 +67,9 @@ class LabServer:
         scenario = self._first.scenario
         warm_up()
         self._shelf = RobotShelf()
-        for side in sides(scenario):  # refuses what cannot start
-            Session(side, self._shelf.get(side.robot).model, capacity=1)
+        # Refuses what cannot start.
+        sessions = [Session(side, self._shelf.get(side.robot).model, capacity=1) for side in sides(scenario)]
+        self._pose = FirstPose.of(sessions[0])
         self._choices = Choices(
             tuple(dict.fromkeys((*robot_names(), scenario.robot))),
             tuple(dict.fromkeys((*scenario_names(), scenario.name))),
@@ -126,6 +127,7 @@ class LabServer:
                 client,
                 self._shelf,
                 self._first,
+                self._pose,
                 self._choices,
                 self._profile,
                 self.url,
