@@ -16,12 +16,13 @@ from types import TracebackType
 import viser
 
 from momentum_lab.app.control_panel import Choices
+from momentum_lab.app.first_pose import FirstPose
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import warm_up
 from momentum_lab.app.profile import NORMAL, RenderProfile
 from momentum_lab.app.quiet import quiet
 from momentum_lab.app.robots import RobotShelf
-from momentum_lab.app.visitor import FirstPose, Visitor
+from momentum_lab.app.visitor import Visitor
 from momentum_lab.errors import ServerError
 from momentum_lab.robot.catalog import robot_names
 from momentum_lab.run_file import Run, as_run

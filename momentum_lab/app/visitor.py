@@ -18,6 +18,7 @@ from momentum_lab.app.control_panel import Choices
 from momentum_lab.app.demo_stage import DemoStage
 from momentum_lab.app.exporter import finished
 from momentum_lab.app.film import film
+from momentum_lab.app.first_pose import FirstPose
 from momentum_lab.app.hand import Reach
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
@@ -34,14 +35,13 @@ from momentum_lab.app.robots import LoadedRobot, RobotShelf
 from momentum_lab.app.share_panel import Sharing
 from momentum_lab.app.snapshot import view_of
 from momentum_lab.app.telling import told
-from momentum_lab.app.wire import Frame, RunTaken, Truth, rows_of
 from momentum_lab.app.view_panel import ViewSettings
+from momentum_lab.app.wire import Frame, RunTaken, Truth, rows_of
 from momentum_lab.app.world import add_floor, add_world
 from momentum_lab.errors import InputError
 from momentum_lab.events import Event
 from momentum_lab.recording import Sample
 from momentum_lab.run_file import Run
-from momentum_lab.session import Session
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,26 +65,6 @@ class Stage:
     plates: PlateScene
     camera: Camera
     size: float
-
-
-@dataclass(frozen=True, slots=True)
-class FirstPose:
-    """How the robot of a session stands as it begins.
-
-    Attributes:
-        robot: its name.
-        q: its configuration (nq,).
-        com_height: of its CoM, m.
-    """
-
-    robot: str
-    q: np.ndarray
-    com_height: float
-
-    @classmethod
-    def of(cls, session: Session) -> FirstPose:
-        """Of a session that has not begun."""
-        return cls(session.scenario.robot, session.state.q, float(session.dynamics.com_in_world[2]))
 
 
 class Visitor:
