@@ -42,7 +42,7 @@ _DASH = 0.012
 # A safe border that moves by less than this many digits of a metre looks the same.
 _DIGITS = 4
 # Room for figures in labels: of a force, N, and of the rate of angular momentum, N m.
-_NEWTONS, _NEWTON_METRES = 4, 3
+_NEWTONS, _NEWTON_METRES = 3, 3
 
 
 @dataclass(frozen=True, slots=True)

@@ -274,7 +274,7 @@ class PushPanel:
 
     def _describe(self, push: Push) -> str:
         """Impulse, and what part of it the CoP alone could catch."""
-        words = f"{blanks(push.impulse, 1, 3)}<b>{push.impulse:.1f} N s</b>"
+        words = f"{blanks(push.impulse, 1, 2)}<b>{push.impulse:.1f} N s</b>"
         bound = self._bound(push)
         if bound > 0.0:
             words += (

@@ -80,9 +80,9 @@ def test_line_from_com_to_cmp_is_parallel_to_the_force(saturated, picture):
 
 def test_the_label_of_the_force_keeps_its_width(talos, standing, picture):
     wrench = standing["foot_wrench_measured"]
-    layout, parts = Layout.of(talos), (0.05, 0.4, 1.0, 1.5)
+    layout, parts = Layout.of(talos), (0.05, 0.4, 1.0, 1.1)
     pressed = [changed_sample(standing, layout, foot_wrench_measured=part * wrench) for part in parts]
-    texts = [drawn(sample, picture)["grf"].text for sample in pressed]  # 44 to 1328 N
+    texts = [drawn(sample, picture)["grf"].text for sample in pressed]  # 44 to 974 N
     assert len({len(text) for text in texts}) == 1
     assert [number(text) for text in texts] == pytest.approx([part * WEIGHT for part in parts], rel=0.02)
 
