@@ -41,7 +41,7 @@ def test_one_platform_or_a_plate_under_each_foot(talos):
     scene.draw(poses, (0.7, 0.2), True)
     for foot in (0, 1):
         box, sole = client.scene.nodes[f"/plates/{foot}"], talos.soles[foot]
-        middle = np.append((sole.lower + sole.upper) / 2, 0.0)
+        middle = np.append((sole.lower + sole.upper) / 2, 0.001)
         assert_close(top_of(box), pin.XYZQUATToSE3(poses[foot]).act(middle), 1e-12)
     left, right = (client.scene.nodes[f"/plates/{foot}"].color for foot in (0, 1))
     assert left != right  # ice looks like ice
@@ -68,6 +68,6 @@ def test_boxes_are_where_the_feet_are(g1, name):
     client, sample = FakeClient(), session.recording.latest
     PlateScene(client, g1).draw(sample["ground_pose"], tuple(session.ground.friction(1.2)), True)
     for foot, sole in enumerate(g1.soles):
-        middle = np.append((sole.lower + sole.upper) / 2, 0.0)
+        middle = np.append((sole.lower + sole.upper) / 2, 0.001)
         there = pin.XYZQUATToSE3(sample["sole_pose"][foot]).act(middle)
         assert np.abs(top_of(client.scene.nodes[f"/plates/{foot}"]) - there).max() < 0.01
