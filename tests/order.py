@@ -28,7 +28,7 @@ def file_of(item: pytest.Item) -> str:
 
 
 def begin_first(items: list[pytest.Item]) -> None:
-    """Files that want the machine to themselves, then the browser, then the longest; each file stays whole."""
+    """Files that want the machine to themselves, then the browser, then the longest, then the rest."""
     quiet = {file_of(item) for item in items if item.get_closest_marker("quiet")}
 
     def rank(item: pytest.Item) -> int:

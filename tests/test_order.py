@@ -16,10 +16,14 @@ def test_what_begins_early_is_there(name: str) -> None:
     assert (ROOT / name).exists()
 
 
-def test_files_stay_whole_and_none_is_lost(request: pytest.FixtureRequest) -> None:
-    items = list(request.session.items)
+def test_none_is_lost_and_long_files_begin_before_short_ones(request: pytest.FixtureRequest) -> None:
+    items = list(request.session.items)[::-1]
     begin_first(items)
     assert set(items) == set(request.session.items)
-    files = [file_of(item) for item in items]
-    begun = [name for name, before in zip(files, ["", *files], strict=False) if name != before]
-    assert len(begun) == len(set(files))
+    begun = list(dict.fromkeys(file_of(item) for item in items))
+    quiet = {file_of(item) for item in items if item.get_closest_marker("quiet")}
+    browser = [name for name in begun if name.startswith(BROWSER) and name not in quiet]
+    long = [name for name in LONGEST if name in begun and name not in quiet]
+    first = len(quiet) + len(browser) + len(long)
+    assert set(begun[: len(quiet)]) == quiet
+    assert begun[len(quiet) : first] == [*browser, *long]
