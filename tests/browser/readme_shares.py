@@ -1,4 +1,4 @@
-"""Whether a picture still shows the lab as it is: how much of each cell is covered, by what, and within wide bounds."""
+"""Whether a picture still shows the lab as it is: how much of each cell is covered, within wide bounds."""
 
 from __future__ import annotations
 
