@@ -33,6 +33,8 @@ _LOST = 5e-3
 _SAME_POINT = 1e-3
 SOME_LIMIT = "foot forces at their limit"
 """What is said where nothing is known that stops the forces."""
+IN_THE_AIR = "in the air: no ground to push on, angular momentum is kept"
+"""What is said while no foot carries anything: then the ground can change neither momentum."""
 
 # Bounds that stop forces wherever the CoP is.
 _OF_FORCES = frozenset({FRICTION, TWIST, LEAST, TORQUE})
@@ -81,6 +83,8 @@ def status_of(
         return _status("fallen", f"fallen at {fall.time:.2f} s: {fall.reason}")
     if sample.number("solver_failed") and failure is not None:
         return _status("solver", f"solver: {failure}")
+    if not carrying_feet(sample, robot.mass):
+        return _status("lifted", IN_THE_AIR)  # no bound holds back what there is no ground for
     lost = lost_goals(sample, robot.mass)
     if lost:
         return _status("border", f"{_where(sample, held)}: {lost}")
@@ -143,8 +147,6 @@ def _footing(sample: Sample, robot: RobotModel) -> Status:
     feet = carrying_feet(sample, robot.mass)
     if len(feet) == len(robot.soles):
         return _status("standing", "standing")
-    if not feet:
-        return _status("lifted", "no foot on the ground")
     names = " and ".join(robot.foot_names[foot] for foot in feet)
     return _status("standing", f"standing on the {names} foot")
 

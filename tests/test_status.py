@@ -130,9 +130,14 @@ def test_one_foot(standing, session, talos):
     assert status_of(sample, talos).words == "standing on the left foot"
 
 
-def test_no_foot(standing, session, talos):
-    sample = changed_sample(standing, session.recording.layout, foot_wrench_measured=0.0)
-    assert status_of(sample, talos) == Status("lifted", "no foot on the ground", "orange")
+def test_in_the_air_no_bound_is_blamed(at_border, session, talos):
+    """What the controller asks for and the ground cannot give is no loss at a border when there is no ground."""
+    assert status_of(at_border, talos).kind == "border"
+    sample = changed_sample(
+        at_border, session.recording.layout, foot_wrench_measured=0.0, momentum_rate_admissible=0.0
+    )
+    words = "in the air: no ground to push on, angular momentum is kept"
+    assert status_of(sample, talos) == Status("lifted", words, "orange")
 
 
 def test_fallen_outranks_the_border(at_border, talos):

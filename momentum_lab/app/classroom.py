@@ -7,7 +7,15 @@ from pathlib import Path
 from momentum_lab.app.demo_wire import DemoEvent, LeaveScenes, ShowScene
 from momentum_lab.app.interlude import Interlude
 from momentum_lab.app.lesson_runs import RunPlayback, staged
-from momentum_lab.app.lesson_wire import LeaveLesson, LessonEvent, LessonNews, OpenLesson, PlayRun, ShowRun
+from momentum_lab.app.lesson_wire import (
+    LeaveLesson,
+    LessonEvent,
+    LessonNews,
+    OfferRun,
+    OpenLesson,
+    PlayRun,
+    ShowRun,
+)
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.wire import OpenRun
 from momentum_lab.errors import InputError, LabError
@@ -40,6 +48,7 @@ class Classroom:
         self._seen: dict[str, None] = {}
         self._on_stage = ""
         self._begun = False
+        self._offered = ""
         self._record: LessonRecord | None = None
         self._error = ""
         self._told = LessonNews()
@@ -69,6 +78,8 @@ class Classroom:
                 self._open(event)
             case PlayRun(label):
                 self._play(label)
+            case OfferRun(label):
+                self._offer(label)
             case ShowRun(label, time):
                 self._show(label, time)
             case LeaveLesson():
@@ -115,6 +126,10 @@ class Classroom:
         self._watched |= self._put_on_stage(label)
         self._begun = True
 
+    def _offer(self, label: str) -> None:
+        self._put_on_stage(label)
+        self.stage.playing, self._offered = False, label
+
     def _show(self, label: str, time: float) -> None:
         if label in self._runs:
             self.stage, self._on_stage = self._runs[label], label
@@ -138,7 +153,7 @@ class Classroom:
 
     def _leave(self) -> None:
         self.stage, self._lesson, self._on_stage = self._own, None, ""
-        self._record, self._error = None, ""
+        self._record, self._error, self._offered = None, "", ""
         self._runs.clear()
         self._seen.clear()
         self._watched.clear()
@@ -148,10 +163,11 @@ class Classroom:
         stage = self.stage
         if not isinstance(stage, RunPlayback) or not self._on_stage or isinstance(event, Pause | SetSpeed):
             stage.take(event)
-        elif not self._begun:
-            raise InputError("lesson", "a hand on the robot", "your prediction first, then the run")
-        elif isinstance(event, Play) and stage.over:
+        elif isinstance(event, Play) and (stage.over or self._waits_for_play):
             self._play(self._on_stage)
+        elif not self._begun:
+            first = "Play, to see the run" if self._offered else "your prediction first, then the run"
+            raise InputError("lesson", "a hand on the robot", first)
         elif isinstance(event, Play | StepOnce | LookBack):
             stage.take(event)
         elif isinstance(event, Branch):
@@ -160,6 +176,11 @@ class Classroom:
             self._try_out()
             if not isinstance(event, Reset):
                 self.stage.take(event)
+
+    @property
+    def _waits_for_play(self) -> bool:
+        """Whether the run on stage is one that its step offers, and that has not been played."""
+        return self._on_stage == self._offered and self._on_stage not in self._watched
 
     def _try_out(self) -> None:
         """The start of a run without its pushes, for a hand to try; with the robot beside it, if that can be."""

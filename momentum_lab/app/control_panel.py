@@ -114,9 +114,9 @@ class ControlPanel:
                 1.0,
                 0.01,
                 truth.priority,
-                hint="From 0 to 1 (no unit). 0 keeps linear momentum: the CoP moves and the body turns. "
-                "1 keeps angular momentum: the force tilts and the CoM moves. At 0, too, computed-torque puts "
-                "angular momentum first when the body runs out of room to turn and the capture point is safe.",
+                hint="From 0 to 1 (no unit). 0 keeps linear momentum: the CoP moves and the body turns, until its "
+                "joints run out of room and the capture point is safe. 1 keeps angular momentum: the force tilts "
+                "and the CoM moves.",
             ),
             SetPriority,
             post,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from html import escape
 
@@ -34,6 +35,9 @@ TITLE = (
     # Viser's sheet on a phone is as wide as 20 letters and leaves the rest of the row empty.
     "@media(max-width:36em){[style*='width: 20em']{width:100vw!important}}</style>"
 )
+# A whole number of N or N m, and a place for three of its figures: the usual losses.
+_SIZE = re.compile(r"\b(\d+)(?= N\b)")
+_THREE_FIGURES = "display:inline-block;min-width:3ch;text-align:right"
 _DASHED = ' stroke-dasharray="4 2.5"'
 BIG_NEXT = '<span class="lab-big"></span>'
 
@@ -45,9 +49,15 @@ def status_line(kind: str, words: str, color: str) -> str:
         f'<div class="lab" data-status="{escape(kind)}" style="padding-top:.5em">'
         f'<div style="border-left:.35em solid {css};padding:.1em 0 .1em .6em;min-height:3.6em;'
         'display:flex;align-items:center">'
-        f'<span style="font-size:1.25em;font-weight:600;color:{css}">{_SIGNS[kind]} {escape(words)}</span>'
+        f'<span style="font-size:1.25em;font-weight:600;color:{css}" class="n">'
+        f"{_SIGNS[kind]} {steady_sizes(escape(words))}</span>"
         "</div></div>"
     )
+
+
+def steady_sizes(words: str) -> str:
+    """Escaped words with room for three figures before every N and N m, so that those behind do not jump."""
+    return _SIZE.sub(rf'<span style="{_THREE_FIGURES}">\1</span>', words)
 
 
 def time_line(

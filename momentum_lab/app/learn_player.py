@@ -9,7 +9,7 @@ import viser
 from momentum_lab.app import learn_html
 from momentum_lab.app.learn_frame import LearnFrame
 from momentum_lab.app.learn_pages import PAGES, Desk, Page
-from momentum_lab.app.lesson_wire import LessonEvent, LessonNews, ShowRun
+from momentum_lab.app.lesson_wire import LessonEvent, LessonNews, OfferRun, ShowRun
 from momentum_lab.app.progress import Progress, ProgressStore
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.walk import Walk
@@ -121,7 +121,7 @@ class LessonPlayer:
         if step.kind == "explain":
             self._ask(ShowRun(step.run, step.time))
         elif step.kind == "play" and step.run not in seen:
-            self._ask(ShowRun(step.run, 0.0))
+            self._ask(OfferRun(step.run))
         elif step.kind == "compare" and walk.played not in seen:
             self._ask(ShowRun(walk.played, _END))
 

@@ -20,6 +20,12 @@ class PlayRun(msgspec.Struct, frozen=True, tag=True):
     label: str
 
 
+class OfferRun(msgspec.Struct, frozen=True, tag=True):
+    """Put a run of the open lesson on stage at its start; whatever it needs has been done, and Play plays it."""
+
+    label: str
+
+
 class ShowRun(msgspec.Struct, frozen=True, tag=True):
     """Show an instant of a run, s; a run that nobody has seen yet is played out of sight."""
 
@@ -31,7 +37,7 @@ class LeaveLesson(msgspec.Struct, frozen=True, tag=True):
     """Give the person's own session back as it was."""
 
 
-LessonEvent = OpenLesson | PlayRun | ShowRun | LeaveLesson
+LessonEvent = OpenLesson | PlayRun | OfferRun | ShowRun | LeaveLesson
 
 
 class LessonNews(msgspec.Struct, frozen=True):

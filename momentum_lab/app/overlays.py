@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 import pinocchio as pin
 
+from momentum_lab.app.steady import steady
 from momentum_lab.app.support_now import polygon_of, sole_placement
 from momentum_lab.momentum.ground import GRAVITY, NO_FORCE
 from momentum_lab.momentum.support import support_margin
@@ -40,6 +41,8 @@ _LEFT = np.array([-0.88, -0.47])
 _DASH = 0.012
 # A safe border that moves by less than this many digits of a metre looks the same.
 _DIGITS = 4
+# Room for figures in labels: of a force, N, and of the rate of angular momentum, N m.
+_NEWTONS, _NEWTON_METRES = 3, 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,14 +163,14 @@ def _forces(sample: Sample, picture: Picture, ground: float) -> list[Mark]:
         Mark(
             "grf",
             (_point(cop), _point(cop + metres_per_newton * net)),
-            text=f"{np.linalg.norm(net):.0f} N",
+            text=f"{steady(float(np.linalg.norm(net)), 0, _NEWTONS)} N",
             at=_point(cop + 0.45 * metres_per_newton * net),
         ),
         Mark("com_cmp", (_point(com), _point(cmp))),
     ]
     gap = float(np.linalg.norm((cmp - cop)[:2]))
     if gap > _NO_GAP * (com[2] - ground) and weights[2] > NO_FORCE:
-        text = f"rate of angular momentum {gap * net[2]:.0f} N m"
+        text = f"rate of angular momentum {steady(gap * net[2], 0, _NEWTON_METRES)} N m"
         marks.append(Mark("gap", (_point(cop), _point(cmp)), text=text, at=_beside(cop, cmp, com[2])))
     return marks
 

@@ -17,6 +17,8 @@ _PLATFORM = (0.9, 0.9)
 _FIRM, _SLIPPERY = (186, 176, 158), (150, 196, 224)
 # Ground with less friction than this looks like ice.
 _ICE = 0.35
+# A plate level with the floor lies so far above it, m: more than a browser's depth can confuse, less than any mark.
+_ABOVE = 0.001
 # Planes that differ by less than this are one, m and rad.
 _SAME = 1e-6
 
@@ -84,7 +86,7 @@ class PlateScene:
     def _place(self, box: Any, plate: pin.SE3, middle: np.ndarray) -> None:
         """Put the top of a box onto a plate, its middle over a point of it (3,)."""
         x, y, z, w = pin.Quaternion(plate.rotation).coeffs().tolist()
-        box.position = plate.act(middle - np.array([0.0, 0.0, _THICKNESS / 2.0]))
+        box.position = plate.act(middle + np.array([0.0, 0.0, _ABOVE - _THICKNESS / 2.0]))
         box.wxyz = (w, x, y, z)
 
 

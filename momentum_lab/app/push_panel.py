@@ -11,6 +11,7 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.robots import LoadedRobot
+from momentum_lab.app.steady import blanks, steady
 from momentum_lab.app.support_now import polygon_of
 from momentum_lab.app.widgets import Post
 from momentum_lab.errors import InputError
@@ -273,12 +274,12 @@ class PushPanel:
 
     def _describe(self, push: Push) -> str:
         """Impulse, and what part of it the CoP alone could catch."""
-        words = f"<b>{push.impulse:.1f} N s</b>"
+        words = f"{blanks(push.impulse, 1, 2)}<b>{push.impulse:.1f} N s</b>"
         bound = self._bound(push)
         if bound > 0.0:
             words += (
                 f" = <b>{push.impulse / bound:.2f}</b> of the pendulum bound "
-                f'<span class="dim">({bound:.1f} N s: all that moving the CoP alone can catch)</span>'
+                f'<span class="dim">({steady(bound, 1, 2)} N s: all that moving the CoP alone can catch)</span>'
             )
         return f'<div class="lab n">{words}</div>'
 

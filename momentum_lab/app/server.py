@@ -16,6 +16,7 @@ from types import TracebackType
 import viser
 
 from momentum_lab.app.control_panel import Choices
+from momentum_lab.app.first_pose import FirstPose
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import warm_up
 from momentum_lab.app.profile import NORMAL, RenderProfile
@@ -67,8 +68,9 @@ class LabServer:
         scenario = self._first.scenario
         warm_up()
         self._shelf = RobotShelf()
-        for side in sides(scenario):  # refuses what cannot start
-            Session(side, self._shelf.get(side.robot).model, capacity=1)
+        # Refuses what cannot start.
+        sessions = [Session(side, self._shelf.get(side.robot).model, capacity=1) for side in sides(scenario)]
+        self._pose = FirstPose.of(sessions[0])
         self._choices = Choices(
             tuple(dict.fromkeys((*robot_names(), scenario.robot))),
             tuple(dict.fromkeys((*scenario_names(), scenario.name))),
@@ -126,6 +128,7 @@ class LabServer:
                 client,
                 self._shelf,
                 self._first,
+                self._pose,
                 self._choices,
                 self._profile,
                 self.url,

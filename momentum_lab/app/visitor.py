@@ -18,6 +18,7 @@ from momentum_lab.app.control_panel import Choices
 from momentum_lab.app.demo_stage import DemoStage
 from momentum_lab.app.exporter import finished
 from momentum_lab.app.film import film
+from momentum_lab.app.first_pose import FirstPose
 from momentum_lab.app.hand import Reach
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
@@ -34,6 +35,7 @@ from momentum_lab.app.robots import LoadedRobot, RobotShelf
 from momentum_lab.app.share_panel import Sharing
 from momentum_lab.app.snapshot import view_of
 from momentum_lab.app.telling import told
+from momentum_lab.app.view_panel import ViewSettings
 from momentum_lab.app.wire import Frame, RunTaken, Truth, rows_of
 from momentum_lab.app.world import add_floor, add_world
 from momentum_lab.errors import InputError
@@ -72,6 +74,7 @@ class Visitor:
         client: the browser tab.
         shelf: loaded robots.
         first: what the session starts with.
+        pose: how its robot stands before the session has told.
         choices: what can be chosen.
         profile: how much to draw.
         url: where the lab is served.
@@ -85,6 +88,7 @@ class Visitor:
         client: viser.ClientHandle,
         shelf: RobotShelf,
         first: Run,
+        pose: FirstPose,
         choices: Choices,
         profile: RenderProfile,
         url: str,
@@ -94,7 +98,7 @@ class Visitor:
     ) -> None:
         self._url, self._library, self._lesson = url, library, lesson
         self._client, self._shelf, self._profile = client, shelf, profile
-        self._choices = choices
+        self._choices, self._pose = choices, pose
         self._link = Link(first, choices.robots, choices.scenarios)
         self._stage: Stage | None = None
         self._panels: Panels | None = None
@@ -145,6 +149,7 @@ class Visitor:
         """Draw frames until the session ends."""
         try:
             add_world(self._client, self._profile)
+            self._appear()
             for frame in self._link.frames():
                 self._draw(frame)
                 self.latest = frame
@@ -155,6 +160,14 @@ class Visitor:
         if self._panels is not None and not self._left:
             self._panels.status.end()
 
+    def _appear(self) -> None:
+        """Show the robot while its session still starts: a browser then draws it before it makes the panels."""
+        pose = self._pose
+        with self._client.atomic():
+            stage = self._set_stage(pose.robot, self._shelf.get(pose.robot), pose.q, pose.com_height)
+            stage.body.see_through(ViewSettings().see_through)
+        self._client.flush()
+
     def _draw(self, frame: Frame) -> None:
         """Everything that is new in a frame, sent at once."""
         truth = frame.truth
@@ -162,7 +175,7 @@ class Visitor:
         sample = Sample.of(loaded.layout, rows_of(frame.row, loaded.layout.width)[0])
         if self._panels is not None:
             self._comparison.begin(frame, loaded, self._panels.runs, self._panels.plots)
-        stage = self._set_stage(truth, loaded, sample)
+        stage = self._set_stage(truth.robot, loaded, sample["q"], float(sample["com"][2]))
         self._demo.before(stage.camera, frame.demo)
         panels = self._panels or self._furnish(truth, loaded.layout.foot_names)
         self._comparison.begin(frame, loaded, panels.runs, panels.plots)
@@ -179,19 +192,18 @@ class Visitor:
         self._client.flush()
         self._draw_panels(panels, frame, loaded, sample)
 
-    def _set_stage(self, truth: Truth, loaded: LoadedRobot, sample: Sample) -> Stage:
+    def _set_stage(self, name: str, loaded: LoadedRobot, q: np.ndarray, size: float) -> Stage:
         """The stage for the robot that plays; the one before it leaves."""
-        if self._stage is not None and self._stage.name == truth.robot:
+        if self._stage is not None and self._stage.name == name:
             return self._stage
         if self._stage is not None:
             self._stage.body.remove()
             self._stage.marks.remove()
             self._stage.plates.remove()
-        size = float(sample["com"][2])
-        body = RobotScene(self._client, loaded, sample["q"])
+        body = RobotScene(self._client, loaded, q)
         marks, camera = MarkScene(self._client, size), Camera(self._client, size)
         plates = PlateScene(self._client, loaded.model)
-        self._stage = Stage(truth.robot, loaded, body, marks, plates, camera, size)
+        self._stage = Stage(name, loaded, body, marks, plates, camera, size)
         self._look(START_VIEW)
         if self._panels is not None:
             self._receive(self._panels, self._stage)

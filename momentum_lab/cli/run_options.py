@@ -93,8 +93,7 @@ def tuning_arguments(parser: Parser) -> None:
         "--priority",
         type=number("--priority", 0.0, 1.0, "0 keeps linear momentum, 1 angular momentum"),
         metavar="X",
-        help="which momentum to keep: 0 linear, 1 angular; at 0, too, computed-torque puts angular momentum first "
-        "when the body runs out of room to turn and the capture point is safe",
+        help="which momentum to keep: 0 linear, as long as the body has room to turn; 1 angular",
     )
     parser.add_argument(
         "--set",

@@ -25,10 +25,13 @@ from momentum_lab.robot.state import Dynamics
 
 # A body that will have turned so far sideways, rad, begins to need its angular momentum back, and then needs
 # nothing more urgently: TALOS' hips end at 0.4, G1's ankles before 0.6.
+# Sideways TALOS then stands 1.09 times what its CoP can catch; with 0.4/0.7 1.08, with 0.8/1.1 1.05.
 _LITTLE_ROOM, _NO_ROOM = 0.25, 0.45
 # Legs fold forward and backward, where bodies turn by 0.7 and stand: such a turn counts this part of one sideways.
+# At 0.4 it already cut into the linear momentum that Fig. 7 (left) keeps.
 _PITCH = 0.25
 # Braking begins this far before its cost is covered, m: within so long the capture point still moves inward.
+# With 0.02 TALOS stands 1.09 and not 1.10 times what its CoP can catch.
 _EARLY = 0.03
 # Damping that is switched off does not make the turn endless, 1/s.
 _LEAST_DAMPING = 1.0

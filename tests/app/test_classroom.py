@@ -7,7 +7,7 @@ import pytest
 
 from momentum_lab.app.classroom import Classroom
 from momentum_lab.app.lesson_runs import RunPlayback
-from momentum_lab.app.lesson_wire import LeaveLesson, OpenLesson, PlayRun, ShowRun
+from momentum_lab.app.lesson_wire import LeaveLesson, OfferRun, OpenLesson, PlayRun, ShowRun
 from momentum_lab.app.playback import Playback
 from momentum_lab.errors import InputError
 from momentum_lab.events import (
@@ -59,6 +59,20 @@ def test_nothing_moves_before_the_prediction(own: Playback, lesson: OpenLesson) 
     room.take(SetSpeed(0.5))
     assert room.stage.speed == 0.5
     assert room.stage.session.ticks == 1
+
+
+def test_play_plays_the_run_that_its_step_offers(own: Playback, lesson: OpenLesson) -> None:
+    """The prediction has been made: any Play is the lesson's, and a hand still has to wait for it."""
+    room = Classroom(own)
+    room.take(lesson)
+    room.take(OfferRun("push"))
+    assert not room.stage.playing
+    for event in (ApplyPush(Push(force=50.0)), StepOnce(20)):
+        with pytest.raises(InputError, match="Play, to see the run"):
+            room.take(event)
+    room.take(Play())
+    played_to_its_end(room)
+    assert room.news().seen == ("push",)
 
 
 def test_what_was_seen_is_what_was_rehearsed(own: Playback, lesson: OpenLesson) -> None:

@@ -8,7 +8,9 @@ import pytest
 
 from momentum_lab.app.marks import STYLES
 from momentum_lab.app.overlays import Mark, Picture, overlays
+from momentum_lab.app.steady import FIGURE_SPACE
 from momentum_lab.physics.push import Push
+from momentum_lab.recording import Layout
 from tests.app.conftest import changed_sample, sample_at
 from tests.conftest import assert_close
 from tests.runs import PUSH_END, PUSH_START
@@ -76,12 +78,21 @@ def test_line_from_com_to_cmp_is_parallel_to_the_force(saturated, picture):
     )  # the end on the ground is raised by millimetres
 
 
+def test_the_label_of_the_force_keeps_its_width(talos, standing, picture):
+    wrench = standing["foot_wrench_measured"]
+    layout, parts = Layout.of(talos), (0.05, 0.4, 1.0, 1.1)
+    pressed = [changed_sample(standing, layout, foot_wrench_measured=part * wrench) for part in parts]
+    texts = [drawn(sample, picture)["grf"].text for sample in pressed]  # 44 to 974 N
+    assert len({len(text) for text in texts}) == 1
+    assert [number(text) for text in texts] == pytest.approx([part * WEIGHT for part in parts], rel=0.02)
+
+
 def test_gap_tells_the_rate_of_angular_momentum(saturated, picture):
     # No push acts any more: dk/dt about the horizontal axes is the moment of the ground about the CoM.
     gap = drawn(saturated, picture)["gap"]
     moment = np.linalg.norm(saturated["momentum_rate_measured"][3:5])
     assert moment > 20.0
-    assert gap.text == f"rate of angular momentum {moment:.0f} N m"
+    assert gap.text.replace(FIGURE_SPACE, "") == f"rate of angular momentum {moment:.0f} N m"
     assert_close(points(gap)[:, :2], [saturated["cop_measured"], saturated["cmp"]], 1e-12)
 
 

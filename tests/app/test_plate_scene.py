@@ -35,12 +35,13 @@ def test_one_platform_or_a_plate_under_each_foot(talos):
     scene = PlateScene(client, talos)
     scene.draw(np.array([pose(0.04, 0.0, 0.0), pose(0.0, 0.0, 0.0)]), (0.7, 0.7), True)
     assert list(client.scene.nodes) == ["/plates/0"]
-    assert_close(top_of(client.scene.nodes["/plates/0"]), [0.02, 0.0, 0.1], 1e-12)
+    # A plate that is level with the floor would be hidden in it: the top is a millimetre above what carries.
+    assert_close(top_of(client.scene.nodes["/plates/0"]), [0.02, 0.0, 0.101], 1e-12)
     poses = np.array([pose(0.0, 0.08, 0.2), pose(0.0, -0.08, -0.2)])
     scene.draw(poses, (0.7, 0.2), True)
     for foot in (0, 1):
         box, sole = client.scene.nodes[f"/plates/{foot}"], talos.soles[foot]
-        middle = np.append((sole.lower + sole.upper) / 2, 0.0)
+        middle = np.append((sole.lower + sole.upper) / 2, 0.001)
         assert_close(top_of(box), pin.XYZQUATToSE3(poses[foot]).act(middle), 1e-12)
     left, right = (client.scene.nodes[f"/plates/{foot}"].color for foot in (0, 1))
     assert left != right  # ice looks like ice
@@ -67,6 +68,6 @@ def test_boxes_are_where_the_feet_are(g1, name):
     client, sample = FakeClient(), session.recording.latest
     PlateScene(client, g1).draw(sample["ground_pose"], tuple(session.ground.friction(1.2)), True)
     for foot, sole in enumerate(g1.soles):
-        middle = np.append((sole.lower + sole.upper) / 2, 0.0)
+        middle = np.append((sole.lower + sole.upper) / 2, 0.001)
         there = pin.XYZQUATToSE3(sample["sole_pose"][foot]).act(middle)
         assert np.abs(top_of(client.scene.nodes[f"/plates/{foot}"]) - there).max() < 0.01

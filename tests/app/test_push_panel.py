@@ -29,6 +29,10 @@ class Desk:
 
     @property
     def size(self) -> str:
+        return self.line.strip()
+
+    @property
+    def line(self) -> str:
         return re.sub("<[^>]*>", "", self.gui.html[1].content)
 
 
@@ -120,3 +124,13 @@ def test_what_is_no_number_is_told_and_not_posted(desk, label, value):
     assert desk.posted == []
     assert "allowed: a finite number" in desk.told[0]
     assert "allowed: a finite number" in desk.size
+
+
+def test_the_line_of_the_size_keeps_its_width(desk, standing):
+    desk.panel.see(standing)
+    widths = set()
+    for force in (30.0, 99.0, 100.0, 217.0, 650.0):  # 3.0 to 65.0 N s
+        desk.set("force (N)", force)
+        desk.panel.refresh()
+        widths.add(len(desk.line))
+    assert len(widths) == 1

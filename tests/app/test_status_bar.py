@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import msgspec
@@ -38,7 +39,8 @@ class Bar:
 
     @property
     def text(self) -> str:
-        return " ".join(handle.content for handle in self.gui.html if handle.visible)
+        content = " ".join(handle.content for handle in self.gui.html if handle.visible)
+        return re.sub("<span[^>]*>|</span>", "", content)
 
     def press(self, group: str, name: str) -> None:
         assert name in self.gui.widgets[group].options

@@ -36,3 +36,14 @@ def test_the_line_of_time_does_not_jump(behind):
     }
     assert len(lines) == 1
     assert ".lab.n{font-variant-numeric:tabular-nums}" in html.TITLE
+
+
+def test_the_status_has_room_for_the_figures_of_a_loss():
+    lines = [
+        html.status_line("border", f"CoP on the toes: angular goal gives way by {size} N m", "orange")
+        for size in (5, 88, 412)
+    ]
+    # The words are the same, and each number has a box of three figures of one width.
+    assert [text(line).split()[-3] for line in lines] == ["5", "88", "412"]
+    assert all("min-width:3ch" in line and 'class="n"' in line for line in lines)
+    assert "min-width" not in html.status_line("fallen", "fallen at 1.32 s: left foot", "vermillion")

@@ -18,7 +18,7 @@ from momentum_lab.app.world import add_world
 from tests.app.test_link import alive
 from tests.app.test_server import children
 from tests.browser.conftest import OUTPUT, Opener, Served
-from tests.browser.lab_page import CANVAS, PATIENCE
+from tests.browser.lab_page import CANVAS, PATIENCE, LabPage
 
 pytestmark = [
     pytest.mark.browser,
@@ -159,6 +159,32 @@ def test_look_back_and_go_on_from_there(served: Served, open_page: Opener) -> No
     lab.expect_status("standing|gives way")
 
 
+def test_scrub_to_an_instant_in_between_and_go_on_from_there(served: Served, open_page: Opener) -> None:
+    """While paused a hand drags time back to before a fall; the same bits then fall at the same instant again."""
+    lab = open_page(served.url).until_furnished()
+    lab.slide("force (N)", "End")
+    lab.press("p")
+    lab.expect_status("fallen at [0-9.]+ s: ")
+    fallen = seconds("fallen at ([0-9.]+) s", lab.status.inner_text())
+    lab.press("k")
+    lab.expect_text("paused")
+    end = seconds(r"time\s*([0-9.]+)", lab.settled_text("simulated time"))
+    lying = lab.picture(CANVAS)
+    scrub(lab, fallen - 0.6 - end)
+    lab.expect_text("s before the end")
+    line = lab.settled_text("simulated time")
+    shown, behind = seconds(r"time\s*([0-9.]+)", line), seconds("([0-9.]+) s before the end", line)
+    assert shown == pytest.approx(
+        fallen - 0.6, abs=0.1
+    )  # a pixel of the slider is a few hundredths of a second
+    assert shown + behind == pytest.approx(end, abs=0.02)
+    assert "fallen" not in lab.status.inner_text()
+    assert (np.abs(lab.picture(CANVAS) - lying).max(axis=2) > 40).mean() > 0.02
+    lab.press("b")
+    expect(lab.page.get_by_text("s before the end")).to_have_count(0, timeout=PATIENCE)
+    lab.expect_status(f"fallen at {fallen:.2f} s")
+
+
 def test_on_a_phone(served: Served, open_page: Opener) -> None:
     lab = open_page(served.url, 390, 844).until_furnished()
     pause_in_saturation(lab)
@@ -197,6 +223,30 @@ def settled_children(pid: int) -> set[int]:
         if (now := children(pid)) != last:
             last, since = now, time.monotonic()
     return last
+
+
+def seconds(pattern: str, words: str) -> float:
+    """The number in a line of the page."""
+    found = re.search(pattern, words)
+    assert found is not None, f"no {pattern} in {words!r}"
+    return float(found[1])
+
+
+def scrub(lab: LabPage, target: float) -> None:
+    """Drag the look-back slider from its end to some seconds before it (below 0)."""
+    row = lab.page.locator("label:text-is('look back (s)')").first
+    thumb = lab.page.locator(f"[id='{row.get_attribute('for')}'] [role=slider]").first
+    least = float(thumb.get_attribute("aria-valuemin") or "nan")
+    track = thumb.locator("xpath=..").bounding_box()
+    knob = thumb.bounding_box()
+    assert track is not None
+    assert knob is not None
+    y = knob["y"] + knob["height"] / 2
+    lab.page.mouse.move(knob["x"] + knob["width"] / 2, y)
+    lab.page.mouse.down()
+    for part in (0.5, 1.0):
+        lab.page.mouse.move(track["x"] + track["width"] * (1.0 - part * target / least), y)
+    lab.page.mouse.up()
 
 
 def pause_in_saturation(lab) -> None:
