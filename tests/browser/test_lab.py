@@ -170,12 +170,12 @@ def test_scrub_to_an_instant_in_between_and_go_on_from_there(served: Served, ope
     lab.expect_text("paused")
     end = seconds(r"time\s*([0-9.]+)", lab.settled_text("simulated time"))
     lying = lab.picture(CANVAS)
-    scrub(lab, fallen - 0.6 - end)
+    scrub(lab, fallen - 0.3 - end)  # the push began 0.55 s before the fall
     lab.expect_text("s before the end")
     line = lab.settled_text("simulated time")
     shown, behind = seconds(r"time\s*([0-9.]+)", line), seconds("([0-9.]+) s before the end", line)
     assert shown == pytest.approx(
-        fallen - 0.6, abs=0.1
+        fallen - 0.3, abs=0.1
     )  # a pixel of the slider is a few hundredths of a second
     assert shown + behind == pytest.approx(end, abs=0.02)
     assert "fallen" not in lab.status.inner_text()
