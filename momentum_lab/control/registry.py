@@ -40,8 +40,7 @@ class ControllerEntry:
 CONTROLLERS: dict[str, ControllerEntry] = {
     "computed-torque": ControllerEntry(
         title="Computed torque",
-        summary="Admissible foot forces, then accelerations, then torques (sections 4.2 and 5.1). At priority 0, "
-        "too, angular momentum is first when the body runs out of room to turn and the capture point is safe.",
+        summary="Admissible foot forces, then accelerations, then torques (sections 4.2 and 5.1).",
         make=ComputedTorque,
         gains=ComputedTorqueGains(),
         planners=tuple(PLANNERS),
