@@ -23,14 +23,16 @@ _PERIOD = 0.25
 # Between two notes that somebody is there, ms: one is enough to end the demonstration.
 _QUIET = 700
 
-# Widgets of a panel that is folded away do not exist, so the page speaks through a key, which always works.
+# Widgets of a panel that is folded away do not exist, so the page speaks through a key, which always works. It says
+# which modifiers are down: a drag that is held with one of them would end at a key without it.
 _LISTEN = (
     "(()=>{if(window.labListens)return;window.labListens=true;let last=-1e9,x=-1,y=-1;"
     "const note=e=>{if(!e.isTrusted||e.key==='x')return;"
     "if(e.type==='pointermove'){const still=x===e.screenX&&y===e.screenY,first=x<0;"
     "x=e.screenX;y=e.screenY;if(still||first)return}"
     f"const now=performance.now();if(now-last<{_QUIET})return;last=now;"
-    "document.body.dispatchEvent(new KeyboardEvent('keydown',{key:'x',code:'KeyX',bubbles:true}))};"
+    "const {shiftKey,ctrlKey,altKey,metaKey}=e;document.body.dispatchEvent(new KeyboardEvent('keydown',"
+    "{key:'x',code:'KeyX',bubbles:true,shiftKey,ctrlKey,altKey,metaKey}))};"
     "for(const kind of ['pointerdown','pointermove','wheel','keydown','touchstart'])"
     "window.addEventListener(kind,note,{capture:true,passive:true})})()"
 )
