@@ -52,7 +52,7 @@ class Scene:
         """Wait until something is the case with the session."""
         end = time.monotonic() + PATIENCE / 1000.0
         while not true():
-            assert time.monotonic() < end, f"not true in time; at {self.sample.number('time'):.3f} s"
+            assert time.monotonic() < end, f"not true in time; last frame: {self.visitor.latest}"
             time.sleep(0.05)
 
     @property
@@ -135,8 +135,10 @@ def opened(
         lab = LabPage(page)
         lab.page.locator("[data-status]").wait_for(timeout=PATIENCE)
         lab.dismiss_notices()
+        scene = Scene(lab, server.visitors[0])
+        scene.until(lambda: scene.visitor.latest is not None)  # panels come before the first frame has been drawn
         try:
-            yield Scene(lab, server.visitors[0])
+            yield scene
         finally:
             page.close()
     assert [error for error in errors if not error.startswith(CROSSED)] == []
