@@ -136,7 +136,8 @@ def opened(
         lab.page.locator("[data-status]").wait_for(timeout=PATIENCE)
         lab.dismiss_notices()
         scene = Scene(lab, server.visitors[0])
-        scene.until(lambda: scene.visitor.latest is not None)  # panels come before the first frame has been drawn
+        # Panels come before the first frame has been drawn.
+        scene.until(lambda: scene.visitor.latest is not None)
         try:
             yield scene
         finally:
