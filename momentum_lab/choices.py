@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import reduce
 from typing import Any
 
-from momentum_lab.control.gains import with_gains
+from momentum_lab.beside import Beside
+from momentum_lab.control.gains import values_of, with_gains
 from momentum_lab.control.ground_sense import GroundSense, ground_sense
 from momentum_lab.control.motion import AngularGoal, reach_of
 from momentum_lab.control.planner import OWN
@@ -27,8 +28,8 @@ from momentum_lab.events import (
     SetMotion,
     SetPriority,
 )
-from momentum_lab.momentum.directions import Directions, directions
-from momentum_lab.physics.mismatch import Mismatch, with_error
+from momentum_lab.momentum.directions import Directions, directions, text_of
+from momentum_lab.physics.mismatch import Mismatch, changes, with_error
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.scenario import Scenario
 
@@ -117,11 +118,63 @@ class Choices:
         """
         return reduce(lambda choices, event: choices.after(event, robot), events, self)
 
+    def until(self, other: Choices) -> list[SessionEvent]:
+        """The events that lead from these choices to others."""
+        events: list[SessionEvent] = []
+        before = values_of(self.gains)
+        if other.controller != self.controller:
+            events.append(SelectController(other.controller))
+            before = values_of(controller_entry(other.controller).gains)
+        if other.priority != self.priority:
+            events.append(SetPriority(other.priority))
+        if other.controlled != self.controlled:
+            events.append(SetDirections(text_of(other.controlled)))
+        if other.planner != self.planner:
+            events.append(SelectPlanner(other.planner))
+        if other.motion != self.motion:
+            events.append(SetMotion(other.motion))
+        if other.ground_sense != self.ground_sense:
+            events.append(SetGroundSense(other.ground_sense))
+        events += [SetMismatch(*change) for change in changes(self.mismatch, other.mismatch)]
+        if other.angular_goal != self.angular_goal:
+            events.append(SetAngularGoal(other.angular_goal))
+        changed = {name: value for name, value in values_of(other.gains).items() if value != before[name]}
+        if len(changed) > 1:
+            return [*events, SetGains(changed)]
+        return events + [SetGain(name, value) for name, value in changed.items()]
+
+    def differing(self, other: Choices) -> frozenset[str]:
+        """Names of the choices, gains and model errors in which these choices are others."""
+        names = {name for name in CHOICES if getattr(self, name) != getattr(other, name)} - {
+            "gains",
+            "mismatch",
+        }
+        theirs = values_of(other.gains)
+        gains = {name for name, value in values_of(self.gains).items() if value != theirs.get(name)}
+        return frozenset(names | gains | {name for name, _ in changes(other.mismatch, self.mismatch)})
+
+    def beside(self, beside: Beside) -> Choices:
+        """The choices for a robot beside the one with these choices.
+
+        Raises:
+            InputError: the controller is unknown, or has no such gain, or a value is out of range.
+        """
+        name = beside.controller or self.controller
+        same = self if name == self.controller else self._controlled_by(name)
+        priority = self.priority if beside.priority is None else beside.priority
+        if not 0.0 <= priority <= 1.0:
+            raise InputError("priority", priority, "0 to 1")
+        return replace(same, priority=priority, gains=with_gains(same.gains, beside.gains))
+
     def _controlled_by(self, name: str) -> Choices:
         """Another controller with its own gains; the planner stays if it can."""
         entry = controller_entry(name)
         planner = self.planner if self.planner in entry.planners else OWN
         return replace(self, controller=name, gains=entry.gains, planner=planner)
+
+
+CHOICES = tuple(field.name for field in fields(Choices))
+"""The names of all choices."""
 
 
 def _checked_priority(value: float) -> float:

@@ -8,13 +8,14 @@ from collections.abc import Callable
 import viser
 
 from momentum_lab.app import html
-from momentum_lab.app.chosen import Chosen, chosen_in, values_of
+from momentum_lab.app.chosen import chosen_in
 from momentum_lab.app.differences import NOTHING, choices_in_words
 from momentum_lab.app.tuning_history import TuningHistory
 from momentum_lab.app.tuning_panel import changed_gains
 from momentum_lab.app.widgets import Post
 from momentum_lab.app.wire import Truth
-from momentum_lab.control.gains import declared_gains
+from momentum_lab.choices import Choices
+from momentum_lab.control.gains import declared_gains, values_of
 from momentum_lab.control.registry import controller_entry
 
 _UNDO, _REDO = "Undo", "Redo"
@@ -70,7 +71,7 @@ class ChangesPanel:
             self._post(event)
 
 
-def changes_in_words(before: Chosen, now: Chosen) -> list[str]:
+def changes_in_words(before: Choices, now: Choices) -> list[str]:
     """Every choice that is not what it was, in words; gains of another controller against their defaults."""
     were, are = choices_in_words(before), choices_in_words(now)
     lines = [
@@ -79,8 +80,10 @@ def changes_in_words(before: Chosen, now: Chosen) -> list[str]:
         if value != were.get(name)
     ]
     gains = controller_entry(now.controller).gains
-    before_gains = before.gains if before.controller == now.controller else values_of(gains)
-    return lines + changed_gains(declared_gains(gains).values(), now.gains, before_gains)
+    before_gains = before.gains if before.controller == now.controller else gains
+    return lines + changed_gains(
+        declared_gains(gains).values(), values_of(now.gains), values_of(before_gains)
+    )
 
 
 def _begun_with(truth: Truth) -> tuple[str, str, bool]:

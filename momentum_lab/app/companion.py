@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import msgspec
 
-from momentum_lab.app.chosen import Chosen, chosen_of
+from momentum_lab.app.chosen import told
 from momentum_lab.app.wire import Fallen, Truth
 from momentum_lab.beside import Beside
+from momentum_lab.choices import Choices
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.events import (
@@ -49,12 +50,12 @@ class Companion:
         if isinstance(event, Reset):
             self.stopped = None
 
-    def align(self, first: Chosen) -> None:
+    def align(self, first: Choices) -> None:
         """Make this robot's choices those of the first one, but for the differences."""
         names = controller_entry(self.beside.controller or first.controller).gains.__dataclass_fields__
         gains = {name: value for name, value in self.beside.gains.items() if name in names}
         target = first.beside(msgspec.structs.replace(self.beside, gains=gains))
-        for event in chosen_of(self.session, self.waiting).until(target):
+        for event in self.session.choices_after(self.waiting).until(target):
             self._post(event)
 
     def tick(self) -> None:
@@ -86,15 +87,12 @@ class Companion:
 
     def truth(self, first: Truth, behind: int) -> Truth:
         """What is the case with this robot, given what is the case with the first one."""
-        session, chosen = self.session, chosen_of(self.session, self.waiting)
+        session, chosen = self.session, told(self.session.choices_after(self.waiting))
         fall = session.fall
         fallen = fall is not None and fall.time <= self.shown(behind).number("time")
         return msgspec.structs.replace(
             first,
-            controller=chosen.controller,
-            priority=chosen.priority,
-            planner=chosen.planner,
-            gains=chosen.gains,
+            **{name: chosen[name] for name in ("controller", "priority", "planner", "gains")},
             fall=Fallen(fall.time, fall.reason) if fall is not None and fallen else None,
             failure=session.last_failure,
             failures=session.solver_failures,

@@ -68,6 +68,20 @@ class ControlPanel:
     ) -> None:
         self._gui, self._post, self._tell = gui, post, tell
         self._scenario_name = truth.scenario
+        self._add_scenario(choices, truth)
+        self._add_goals(truth)
+        self._add_priority(truth)
+        self.bounds = BoundsPanel(gui)
+        self._slacks = gui.add_html("", visible=False)
+        self._slacks_text = ""
+        self._next = -math.inf
+        self._directions = _Directions(gui, post, truth)
+        self._changes = ChangesPanel(gui, post, tell, truth)
+        self._gains = TuningPanel(gui, post, tell, truth)
+
+    def _add_scenario(self, choices: Choices, truth: Truth) -> None:
+        """Who stands where."""
+        gui, post = self._gui, self._post
         self._robot = Bound(
             gui.add_dropdown("robot", choices.robots, initial_value=truth.robot), SelectRobot, post
         )
@@ -76,6 +90,10 @@ class ControlPanel:
         )
         again = gui.add_button("Start the scenario again", color="gray", icon=viser.Icon.PLAYER_TRACK_PREV)
         again.on_click(lambda _: post(LoadScenario(self._scenario_name)))
+
+    def _add_goals(self, truth: Truth) -> None:
+        """Who keeps the balance, and what is asked for."""
+        gui, post = self._gui, self._post
         self._controller = Bound(
             gui.add_dropdown("controller", tuple(CONTROLLERS), initial_value=truth.controller),
             SelectController,
@@ -106,6 +124,10 @@ class ControlPanel:
             lambda name: SetAngularGoal(next(goal for goal in ANGULAR_GOALS if goal == name)),
             post,
         )
+
+    def _add_priority(self, truth: Truth) -> None:
+        """Which momentum gives way."""
+        gui, post = self._gui, self._post
         gui.add_html(html.sentence("When the ground cannot give both momentum rates:"))
         self._priority: Bound[float] = Bound(
             gui.add_slider(
@@ -122,13 +144,6 @@ class ControlPanel:
             post,
         )
         gui.add_html(html.slider_ends("hold the CoM", "hold the posture"))
-        self.bounds = BoundsPanel(gui)
-        self._slacks = gui.add_html("", visible=False)
-        self._slacks_text = ""
-        self._next = -math.inf
-        self._directions = _Directions(gui, post, truth)
-        self._changes = ChangesPanel(gui, post, tell, truth)
-        self._gains = TuningPanel(gui, post, tell, truth)
 
     def follow(self, truth: Truth) -> None:
         """Show what is the case."""

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 
 import msgspec
 
-from momentum_lab.app.chosen import CHOICES, Chosen, chosen_in
+from momentum_lab.app.chosen import chosen_in
 from momentum_lab.app.wire import Truth
+from momentum_lab.choices import CHOICES, Choices
+from momentum_lab.momentum.directions import text_of
 from momentum_lab.physics.push import Push
 
 NOTHING = "–"
@@ -28,14 +30,14 @@ def choices(truth: Truth) -> dict[str, str]:
     }
 
 
-def choices_in_words(chosen: Chosen) -> dict[str, str]:
+def choices_in_words(chosen: Choices) -> dict[str, str]:
     """All choices but the gains, by their names on the screen."""
     errors: dict[str, float] = msgspec.structs.asdict(chosen.mismatch)
     return {
         "controller": chosen.controller,
         "priority": f"{chosen.priority:g}",
         "planner": chosen.planner,
-        "directions": chosen.controlled,
+        "directions": text_of(chosen.controlled),
         "motion": chosen.motion or "stand still",
         "angular goal": chosen.angular_goal,
         "how the ground moves": chosen.ground_sense,

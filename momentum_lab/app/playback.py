@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from momentum_lab.app.chosen import chosen_of
 from momentum_lab.app.companion import Companion
 from momentum_lab.app.foresight import Foresight
 from momentum_lab.app.opened import NOTHING_OPENED, OpenedRun
@@ -196,14 +195,14 @@ class Playback:
         if not self._behind:
             self.playing = self.stopped is None
             return
-        chosen = chosen_of(self.session, self._waiting)
+        chosen = self.session.choices_after(self._waiting)
         # The sample that is looked at is the first of the branch: it is simulated again, under the new choices.
         self._timeline.go_back(self._behind + 1)
         if self.beside is not None and not self.beside.back(self._behind + 1):
             self.beside = Companion.of(self.session, self.beside.beside)
         self._behind, self.stopped, self.playing = 0, None, True
         self._waiting.clear()
-        for event in chosen_of(self.session, self._waiting).until(chosen):
+        for event in self.session.choices_after(self._waiting).until(chosen):
             self._pass_on(event)
         self.tick(1)
 
@@ -219,7 +218,7 @@ class Playback:
         self._waiting.append(event)
         if self.beside is not None:
             self.beside.take(event)
-            self.beside.align(chosen_of(self.session, self._waiting))
+            self.beside.align(self.session.choices_after(self._waiting))
 
     def _pass_on(self, event: SessionEvent) -> None:
         self._post(event)
@@ -262,7 +261,7 @@ class Playback:
         if beside is None:
             self.beside = None
             return
-        chosen = chosen_of(self.session, self._waiting)
+        chosen = self.session.choices_after(self._waiting)
         chosen.beside(beside)  # refuses what cannot be, before anything has changed
         if self.beside is None:
             self.beside = Companion.of(self.session, beside)

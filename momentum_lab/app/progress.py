@@ -8,8 +8,8 @@ from typing import Annotated
 import msgspec
 import viser
 
-# A browser that does not answer has nothing to say, s.
-_PATIENCE = 5.0
+# A browser that draws its first pictures in software answers late; one that has not answered by then will not, s.
+_PATIENCE = 30.0
 _PREFIX = "lesson "
 
 
@@ -52,8 +52,8 @@ class ProgressStore:
         return self._known.get(key, Progress())
 
     def set(self, key: str, progress: Progress) -> None:
-        """Keep the progress in a lesson."""
-        if progress != self._known.get(key):
+        """Keep the progress in a lesson; none at all never replaces what a browser has not told."""
+        if progress != self.get(key):
             self._known[key] = progress
             self._client.local_storage.set_item(_PREFIX + key, msgspec.json.encode(progress).decode())
 

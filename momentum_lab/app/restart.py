@@ -8,8 +8,9 @@ from itertools import takewhile
 
 import msgspec
 
-from momentum_lab.app.chosen import chosen_of, values_of
+from momentum_lab.app.chosen import told
 from momentum_lab.beside import Beside
+from momentum_lab.control.gains import values_of
 from momentum_lab.control.motion import motions_of
 from momentum_lab.control.registry import controller_entry
 from momentum_lab.events import (
@@ -98,21 +99,17 @@ def with_robot(
     name: str, session: Session, waiting: Sequence[SessionEvent], beside: Beside | None
 ) -> Scenario:
     """The same scenario and choices with the robot of a name."""
-    chosen = chosen_of(session, waiting)
-    defaults = values_of(controller_entry(chosen.controller).gains)
+    chosen = told(session.choices_after(waiting))
+    defaults = values_of(controller_entry(chosen["controller"]).gains)
     return changed(
         session.scenario,
         robot=name,
-        controller=chosen.controller,
-        priority=chosen.priority,
-        controlled=chosen.controlled,
-        planner=chosen.planner,
-        motion=chosen.motion if chosen.motion in motions_of(load_spec(name)) else "",
-        angular_goal=chosen.angular_goal,
-        ground_sense=chosen.ground_sense,
-        gains={gain: value for gain, value in chosen.gains.items() if value != defaults[gain]},
-        mismatch=chosen.mismatch,
         beside=beside,
+        **chosen
+        | {
+            "motion": chosen["motion"] if chosen["motion"] in motions_of(load_spec(name)) else "",
+            "gains": {gain: value for gain, value in chosen["gains"].items() if value != defaults[gain]},
+        },
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import msgspec
 import numpy as np
 
-from momentum_lab.app.chosen import CHOICES, chosen_of
+from momentum_lab.app.chosen import told
 from momentum_lab.app.wire import Fallen, Opened, RunTaken, Truth
 from momentum_lab.beside import Beside
 from momentum_lab.effects import feet_named
@@ -59,7 +59,7 @@ def truth_of(
         beside: what a robot beside this one does differently.
         opened: the opened run that plays.
     """
-    chosen, time = chosen_of(session, waiting), shown.number("time")
+    time = shown.number("time")
     return Truth(
         run=clock.run,
         scenario=session.scenario.name,
@@ -79,7 +79,7 @@ def truth_of(
         first_push=min(_begun(session, time), key=_start, default=None),
         beside=beside,
         opened=opened,
-        **{name: getattr(chosen, name) for name in CHOICES},
+        **told(session.choices_after(waiting)),
     )
 
 

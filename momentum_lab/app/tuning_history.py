@@ -6,8 +6,8 @@ import math
 import time
 from collections.abc import Callable
 
-from momentum_lab.app.chosen import Chosen
 from momentum_lab.app.widgets import HANDS_OFF
+from momentum_lab.choices import Choices
 from momentum_lab.events import SessionEvent
 
 # One choice that goes on changing at this pace is one step: a slider on its way, s.
@@ -23,11 +23,11 @@ class TuningHistory:
         clock: seconds, for tests.
     """
 
-    def __init__(self, chosen: Chosen, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, chosen: Choices, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._now = chosen
-        self._undo: list[Chosen] = []
-        self._redo: list[Chosen] = []
+        self._undo: list[Choices] = []
+        self._redo: list[Choices] = []
         self._last: tuple[frozenset[str], float] = (frozenset(), -math.inf)
         self._asked = -math.inf
 
@@ -36,7 +36,7 @@ class TuningHistory:
         """How many steps can be taken back, and taken again."""
         return len(self._undo), len(self._redo)
 
-    def note(self, chosen: Chosen) -> None:
+    def note(self, chosen: Choices) -> None:
         """Take note of what is the case; it may be late after a step that has just been asked for."""
         if chosen == self._now or self._clock() - self._asked < HANDS_OFF:
             return
@@ -55,7 +55,7 @@ class TuningHistory:
         """What does it again; nothing if there is none."""
         return self._move(self._redo, self._undo)
 
-    def _move(self, source: list[Chosen], target: list[Chosen]) -> list[SessionEvent]:
+    def _move(self, source: list[Choices], target: list[Choices]) -> list[SessionEvent]:
         if not source:
             return []
         before = self._now

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from momentum_lab.app.chosen import chosen_of
 from momentum_lab.app.companion import Companion
 from momentum_lab.beside import Beside
 from momentum_lab.events import SessionEvent
@@ -39,4 +38,4 @@ class Second:
         for event in self._script.at(session.ticks):
             self._done.append(event)
             self._companion.take(event)
-            self._companion.align(chosen_of(self._first, self._done))
+            self._companion.align(self._first.choices_after(self._done))

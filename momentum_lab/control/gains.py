@@ -62,6 +62,11 @@ def declared_gains(gains: object) -> dict[str, GainInfo]:
     }
 
 
+def values_of(gains: object) -> dict[str, float]:
+    """All gains by name."""
+    return {name: float(getattr(gains, name)) for name in declared_gains(gains)}
+
+
 def with_gains(gains: GainsT, values: dict[str, float]) -> GainsT:
     """The same gains with some values changed.
 

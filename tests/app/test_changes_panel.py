@@ -7,9 +7,10 @@ from dataclasses import fields
 import pytest
 
 from momentum_lab.app.changes_panel import ChangesPanel
-from momentum_lab.app.chosen import Chosen, chosen_in
+from momentum_lab.app.chosen import chosen_in
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.wire import Truth
+from momentum_lab.choices import Choices
 from momentum_lab.control.presets import preset_named
 from momentum_lab.events import (
     Event,
@@ -108,9 +109,9 @@ def test_every_kind_of_choice_is_among_those_tests():
         desk.do(event)
         now = chosen_in(desk.truth)
         touched |= {
-            field.name for field in fields(Chosen) if getattr(first, field.name) != getattr(now, field.name)
+            field.name for field in fields(Choices) if getattr(first, field.name) != getattr(now, field.name)
         }
-    assert touched == {field.name for field in fields(Chosen)}
+    assert touched == {field.name for field in fields(Choices)}
 
 
 def test_all_the_way_back_and_forth(desk):

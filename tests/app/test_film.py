@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import stat
 import subprocess
 import sys
@@ -145,7 +144,6 @@ def test_a_browser_that_has_gone_and_a_film_that_is_stopped_leave_nothing(folder
         film(tab, reel, ViewSettings(), lambda _: None)
 
 
-@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="ffmpeg is not installed")
 def test_the_real_one_makes_a_film_of_that_length(tmp_path):
     path = tmp_path / "film.mp4"
     with encoder(path, (64, 48), 25.0) as write:

@@ -46,3 +46,14 @@ def test_browser_that_keeps_nothing_is_no_error(error: Exception) -> None:
     store = ProgressStore(SimpleNamespace(local_storage=Storage(error=error)))
     store.load(["a"])
     assert store.get("a") == Progress()
+
+
+def test_what_a_silent_browser_keeps_is_not_replaced_by_nothing() -> None:
+    storage = Storage({"lesson a": '{"step": 3}'}, TimeoutError("busy"))
+    store = ProgressStore(SimpleNamespace(local_storage=storage))
+    store.load(["a"])
+    store.set("a", Progress())
+    assert storage.items == {"lesson a": '{"step": 3}'}
+    store.set("a", Progress(1))
+    assert store.get("a") == Progress(1)
+    assert storage.items != {"lesson a": '{"step": 3}'}

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import pytest
 
-from momentum_lab.app.chosen import Chosen
 from momentum_lab.app.tuning_history import TuningHistory
+from momentum_lab.choices import Choices
+from momentum_lab.control.gains import gain
 from momentum_lab.events import SetGain, SetGains, SetMismatch, SetPriority
-from momentum_lab.physics.mismatch import Mismatch
+from momentum_lab.momentum.directions import ALL
+from momentum_lab.physics.mismatch import EXACT, Mismatch
 
 
 class Clock:
@@ -24,12 +26,19 @@ def clock() -> Clock:
     return Clock()
 
 
-def chosen(priority: float = 0.0, controller: str = "computed-torque", **gains: float) -> Chosen:
-    values = {"d": 1.0, "k": 1.0, **gains}
-    return Chosen(controller, priority, "all", "momentum", "", "zero", values)
+@dataclass(frozen=True)
+class Gains:
+    """Two gains with short names."""
+
+    d: float = gain(1.0, "1/s", 0.0, 10.0, "Damper.")
+    k: float = gain(1.0, "1/s^2", 0.0, 10.0, "Spring.")
 
 
-def noted(history: TuningHistory, clock: Clock, *values: Chosen, pause: float = 2.0) -> None:
+def chosen(priority: float = 0.0, controller: str = "computed-torque", **gains: float) -> Choices:
+    return Choices(controller, Gains(**gains), priority, ALL, "momentum", "", "zero", "told", EXACT)
+
+
+def noted(history: TuningHistory, clock: Clock, *values: Choices, pause: float = 2.0) -> None:
     for value in values:
         clock.now += pause
         history.note(value)

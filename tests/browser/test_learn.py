@@ -171,6 +171,13 @@ def test_a_lesson_on_a_phone(served_lesson: Served, open_page: Opener) -> None:
     assert box["x"] + box["width"] <= 390
     lab.save(OUTPUT / "learn_phone_choice_test.png")
 
+    lab.click("B  Only the one that stays upright")
+    expect(button(lab, "Next (I)")).to_be_enabled(timeout=PATIENCE)
+    lab.page.wait_for_timeout(1000)  # the browser keeps it
+    lab.page.reload()
+    at_step(lab, 2)
+    expect(button(lab, "Next (I)")).to_be_enabled(timeout=PATIENCE)
+
 
 def open_list(lab: LabPage) -> None:
     """The tab of lessons, by keyboard."""

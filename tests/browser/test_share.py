@@ -49,6 +49,8 @@ def choose_file(lab: LabPage, what: str) -> None:
 
 def downloaded(lab: LabPage, what: str, folder: Path) -> Path:
     choose_file(lab, what)
+    button = lab.page.get_by_role("button", name="Download", exact=True)
+    expect(button).to_be_enabled(timeout=PATIENCE)  # not before the file before it has gone out
     with lab.page.expect_download(timeout=PATIENCE) as caught:
         lab.click("Download")
     download: Download = caught.value
@@ -96,7 +98,7 @@ def test_an_address_opens_the_run(served: Served, open_page: Opener) -> None:
     run = run_of(replayed(Run(Scenario("theirs"), events, ticks=1000))[0])
     lab = open_page(link(served.url, to_code(run))).until_furnished()
     lab.expect_text("The opened run ends here, with the same bits")
-    lab.expect_text("simulated time 1.00 s · paused")
+    lab.expect_text(r"simulated time\s*1\.00 s · paused")
     lab.expect_com_travel(0.5)
     lab.save(OUTPUT / "opened.png")
     lab.open_tab("5", "Share")
