@@ -57,12 +57,19 @@ class LearnPanel:
         self._truth = truth
         self._entry: Entry | None = None
         self._player: LessonPlayer | None = None
-        self._ready = threading.Event()
+        self._ready, self._remembered = threading.Event(), threading.Event()
+        self._closed = False
         self._frame = LearnFrame(client, tab, self._next, self._back, self._leave)
 
     def start(self, first: Path | None = None) -> None:
         """Show the list, or open a lesson; what the browser remembers is asked for meanwhile."""
         threading.Thread(target=self._start, args=(first,), name="lessons", daemon=True).start()
+
+    def close(self) -> None:
+        """The tab has gone: nothing is shown any more."""
+        self._closed = True
+        self._ready.set()
+        self._remembered.set()
 
     def set_robot(self, robot: LoadedRobot) -> None:
         """Take note of who plays."""
@@ -94,12 +101,19 @@ class LearnPanel:
 
     def _start(self, first: Path | None) -> None:
         self._ready.wait()
-        self._store.load([entry.key for entry in self._library.entries()])
-        entry = next((one for one in self._library.entries() if one.file == first), None)
+        if self._closed:
+            return
+        entries = self._library.entries()
+        entry = next((one for one in entries if one.file == first), None)
         if entry is None:
             self._show_list()
         else:
-            self._open(entry)
+            threading.Thread(target=self._open, args=(entry,), name="first lesson", daemon=True).start()
+        known = self._store.load([one.key for one in entries])
+        self._remembered.set()
+        with self._lock:
+            if known and self._entry is None and not self._closed:
+                self._show_list()
 
     def _show_list(self) -> None:
         entries = self._library.entries()
@@ -110,15 +124,19 @@ class LearnPanel:
     # Opening and leaving.
 
     def _open(self, entry: Entry) -> None:
+        """Open a lesson where the browser left it; it may take a while to say where that was."""
         with self._fresh():
             self._entry = entry
             waiting_page(self._gui, entry)
         try:
             record = self._library.rehearse(entry.file, self._truth.robot)
         except LabError as error:
-            self._show_error(str(error))
+            if not self._closed:
+                self._show_error(str(error))
             return
-        self._begin(entry, record)
+        self._remembered.wait()
+        if not self._closed:
+            self._begin(entry, record)
 
     def _begin(self, entry: Entry, record: LessonRecord) -> None:
         with self._lock:

@@ -38,14 +38,15 @@ class ProgressStore:
         self._client = client
         self._known: dict[str, Progress] = {}
 
-    def load(self, keys: list[str]) -> None:
-        """Ask the browser for the progress in some lessons."""
+    def load(self, keys: list[str]) -> bool:
+        """Ask the browser for the progress in some lessons; whether it knows of any."""
         with contextlib.suppress(
             RuntimeError, TimeoutError
         ):  # the tab has gone, or its browser keeps nothing
             for key in keys:
                 text = self._client.local_storage.get_item(_PREFIX + key, timeout=_PATIENCE)
                 self._known[key] = _progress(text)
+        return any(progress != Progress() for progress in self._known.values())
 
     def get(self, key: str) -> Progress:
         """The progress in a lesson."""

@@ -142,6 +142,8 @@ class Visitor:
         """End the session and the drawing: the tab has been closed."""
         self._left = True
         self._demo.close()
+        if self._panels is not None:
+            self._panels.learn.close()
         self._link.close()
         self._thread.join()
 

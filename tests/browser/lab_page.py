@@ -24,8 +24,9 @@ class LabPage:
         self.page = page
 
     def until_furnished(self) -> LabPage:
-        """Wait until the panels and the robot are there."""
+        """Wait until the panels and the robot are there, and keys are heard: the time is told after all of them."""
         expect(self.page.get_by_role("button", name="Push (P)")).to_be_visible(timeout=PATIENCE)
+        expect(self.page.get_by_text("simulated time")).to_be_visible(timeout=PATIENCE)
         self.dismiss_notices()
         return self
 
