@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from momentum_lab.app.beginnings import forgotten
 from momentum_lab.app.companion import Companion
 from momentum_lab.app.foresight import Foresight
 from momentum_lab.app.opened import NOTHING_OPENED, OpenedRun
@@ -151,7 +152,14 @@ class Playback:
             behind=self._behind * self.session.scenario.timestep,
         )
         opened = self._opened.told(self.session)
-        return truth_of(self.session, self._waiting, self.shown, clock, self._difference, opened)
+        return truth_of(
+            self.session, self._waiting, self.shown, clock, self._difference, opened, self._forgotten()
+        )
+
+    def _forgotten(self) -> tuple[float, ...]:
+        """When a hand has pushed that would not push again after going on from what is looked at, s."""
+        tick = self.session.ticks - self._behind - 1
+        return forgotten(self.session, tick, self._opened.events) if self._behind else ()
 
     def taken(self, recording: bool) -> RunTaken:
         """The run as it is now, with its samples or without; a robot beside the first is in its scenario."""

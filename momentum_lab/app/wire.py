@@ -88,6 +88,8 @@ class Truth(msgspec.Struct, frozen=True):
         first_push: the first push since the robot stood up; None before it has begun.
         beside: what a robot beside this one does differently; None when there is none.
         opened: the run that has been opened; None when it is no opened run that plays.
+        pushed: when pushes have begun since the robot stood up, until the end of the run, s.
+        forgotten: those of them that going on from what is looked at would not repeat, s.
     """
 
     run: int
@@ -117,6 +119,8 @@ class Truth(msgspec.Struct, frozen=True):
     first_push: Push | None = None
     beside: Beside | None = None
     opened: Opened | None = None
+    pushed: tuple[float, ...] = ()
+    forgotten: tuple[float, ...] = ()
 
 
 class Other(msgspec.Struct, frozen=True):
