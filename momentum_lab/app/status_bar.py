@@ -9,6 +9,7 @@ from collections.abc import Callable
 import viser
 
 from momentum_lab.app import html
+from momentum_lab.app.push_strip import PushStrip
 from momentum_lab.app.series import KEPT
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
@@ -27,6 +28,9 @@ _PASSING = frozenset({"border", "lifted", "solver"})
 _REACHES = (5.0, 10.0, 20.0, 40.0, KEPT)
 # How often the figures change, s.
 _PERIOD = 0.1
+_LOOK_BACK = "look back (s)"
+# So many pushes are named, the others counted.
+_NAMED = 3
 
 
 class StatusBar:
@@ -55,22 +59,30 @@ class StatusBar:
         )
         self._buttons = gui.add_button_group("time", _buttons(playing=True))
         speeds = gui.add_button_group("speed", tuple(_SPEEDS))
+        self._strip = PushStrip(gui, _LOOK_BACK, clock)
         self._look_back: Bound[float] = Bound(
             gui.add_slider(
-                "look back (s)",
+                _LOOK_BACK,
                 -_REACHES[0],
                 0.0,
                 0.01,
                 0.0,
-                hint="Stops time and shows what was. Play goes on from the end, the button below from there.",
+                hint="Stops time and shows what was; a line in the plots is where you are. "
+                "Play goes on from the end, the button below from there.",
             ),
             lambda seconds: LookBack(max(0.0, -seconds)),
             post,
             clock,
         )
         self._branch = gui.add_button(
-            "Go on from here  (B)", color=(0, 114, 178), icon=viser.Icon.GIT_BRANCH, visible=False
+            "Go on from here  (B)",
+            color=(0, 114, 178),
+            icon=viser.Icon.GIT_BRANCH,
+            visible=False,
+            hint="With the gains and the controller of now. What was done later is forgotten; "
+            "pushes of the scenario or of an opened run come again.",
         )
+        self._warning = gui.add_html("", visible=False)
         self._stand_up.on_click(lambda _: post(Reset()))
         self._buttons.on_click(lambda event: self._pressed(event.target.value))
         self._branch.on_click(lambda _: post(Branch()))
@@ -97,6 +109,9 @@ class StatusBar:
             self._look_back.handle.min = -reach
         self._look_back.follow(-truth.behind)
         self._branch.visible = truth.behind > 0.0
+        self._warn(truth.forgotten)
+        end = simulated + truth.behind
+        self._strip.follow([end - start for start in truth.pushed], reach, truth.playing)
         now = self._clock()
         if now < self._next and truth.playing:
             return
@@ -124,6 +139,12 @@ class StatusBar:
             "stopped", "the simulation has ended: reload the page", "black"
         )
 
+    def _warn(self, forgotten: tuple[float, ...]) -> None:
+        """Say beforehand what going on from here forgets."""
+        self._write("warning", self._warning, html.sentence(forgotten_words(forgotten)))
+        if self._warning.visible != bool(forgotten):
+            self._warning.visible = bool(forgotten)
+
     def _readable(self, status: Status, now: float, playing: bool) -> Status:
         """The status, or one that has not been readable long enough yet."""
         shown = self._shown
@@ -148,6 +169,17 @@ class StatusBar:
 
 def _buttons(playing: bool) -> tuple[str, ...]:
     return ("Pause" if playing else "Play", _SMALL, _LARGE, _STAND_UP)
+
+
+def forgotten_words(pushes: tuple[float, ...]) -> str:
+    """Which pushes of a hand, s of the run, are not repeated."""
+    if not pushes:
+        return ""
+    times = ", ".join(f"{start:.2f} s" for start in pushes[:_NAMED])
+    if len(pushes) == 1:
+        return f"Going on from here forgets the push at {times}: push again."
+    more = f" and {len(pushes) - _NAMED} more" if len(pushes) > _NAMED else ""
+    return f"Going on from here forgets the pushes at {times}{more}: push again."
 
 
 _BITS = {True: ", with the same bits", False: ", with other bits", None: ""}

@@ -54,7 +54,7 @@ def test_a_trace_made_elsewhere(playback, taken):
 
 def test_every_other_kind(taken):
     assert decoded("r.json", made("run", taken)) == taken.run
-    assert made("table", taken).startswith(b"time,q.0,")
+    assert made("table", taken).startswith(b"time [s],q/base_x [m],")
     assert b"__VISER_EMBED_DATA__" in made("recording", taken)
     assert Image.open(io.BytesIO(made("plots", taken))).format == "PNG"
 

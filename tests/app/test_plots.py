@@ -248,3 +248,32 @@ def test_lines_never_outnumber_columns(talos, pushed):
     plots.add_beside(rows[:20])
     plots.begin(talos, pushed.recording.layout)
     plots.add(rows[:20])
+
+
+def test_an_instant_that_is_looked_at_is_a_line_and_what_came_after_it_stays(desk, pushed):
+    rows = pushed.recording.rows(20)
+    desk.plots.add(rows)
+    desk.plots.draw()
+    whole = [handle.data for handle in desk.handles]
+    assert all(np.isnan(data[-2][1:]).all() for data in whole)  # nobody looks back
+    desk.plots.look_at(float(rows[20][0]))
+    for handle, before in zip(desk.handles, whole, strict=True):
+        assert len(handle.series) == len(handle.data)
+        curves = zip(handle.data[1:-2], before[1:-2], strict=True)
+        assert all(np.array_equal(now, then, equal_nan=True) for now, then in curves)
+        drawn = np.flatnonzero(np.isfinite(handle.data[-2][1:])) + 1
+        assert handle.data[-2][drawn].tolist() == [0.0, 1.0]
+        assert handle.data[0][drawn[-1]] == rows[20][0]
+    desk.plots.look_at(np.inf)
+    assert np.isnan(desk.handles[0].data[-2][1:]).all()
+
+
+def test_of_a_long_run_the_window_is_around_the_instant(desk, pushed):
+    rows = standing_still(pushed, 30.0)
+    desk.plots.add(rows)
+    for instant in (0.0, 12.0, 29.9):
+        desk.plots.look_at(instant)
+        x = desk.handles[0].data[0]
+        assert x[0] - 0.01 <= instant <= x[-1]
+        assert x[-1] - x[0] == pytest.approx(WINDOW, abs=0.03)
+        assert x[-1] == pytest.approx(min(30.0, max(WINDOW, instant + WINDOW / 2)), abs=0.03)

@@ -152,6 +152,32 @@ def test_looking_back(bar):
     assert not branch.visible
 
 
+def test_pushes_are_marked_along_the_slider(bar):
+    bar.show(STANDING, seconds=4.0, pushed=(1.0, 3.0), playing=False)
+    assert places(bar) == [pytest.approx(40.0), pytest.approx(80.0)]  # 3 s and 1 s before the end, of 5
+    bar.show(STANDING, seconds=-2.0, behind=2.0)
+    assert places(bar) == [pytest.approx(40.0), pytest.approx(80.0)]  # looking back moves no push
+    bar.show(STANDING, seconds=98.0, behind=0.0, pushed=(1.0, 70.0))
+    assert places(bar) == [pytest.approx(50.0)]  # the first is out of reach
+    seen = [places(bar) for _ in range(40) if bar.show(STANDING, 0.025, playing=True)]
+    assert 1 < len({tuple(each) for each in seen}) <= 3  # about once a second while time runs
+
+
+def places(bar: Bar) -> list[float]:
+    """Where pushes are marked, in percent of the slider."""
+    (strip,) = (handle.content for handle in bar.gui.html if "lab-strip" in handle.content)
+    return [float(place) for place in re.findall(r"data-push[^>]*left:([0-9.]+)%", strip)]
+
+
+def test_what_going_on_would_forget_is_said_before(bar):
+    bar.show(STANDING, behind=1.0, playing=False)
+    assert "forgets" not in bar.text
+    assert "forgets the push at 1.50 s: push again." in bar.show(STANDING, forgotten=(1.5,))
+    many = bar.show(STANDING, forgotten=(1.5, 2.0, 3.0, 4.0, 5.0))
+    assert "forgets the pushes at 1.50 s, 2.00 s, 3.00 s and 2 more" in many
+    assert "forgets" not in bar.show(STANDING, behind=0.0, forgotten=())
+
+
 def test_the_slider_reaches_as_far_back_as_there_is(bar):
     slider = bar.gui.widgets["look back (s)"]
     bar.show(STANDING, seconds=4.0)

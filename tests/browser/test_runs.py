@@ -30,7 +30,7 @@ def test_two_robots_one_stands_and_one_falls(served_fig7: Served, open_page: Ope
     pause(lab)
     lab.save(OUTPUT / "two_robots_test.png")
     both = lab.picture(CANVAS)
-    assert np.isfinite(lab.curve(0, 10)).sum() > 20  # the thin curve of the second robot's CoM
+    assert np.isfinite(lab.curve(0, 11)).sum() > 20  # the thin curve of the second robot's CoM
     lab.page.get_by_label("a second robot").first.evaluate("box => box.click()")
     expect(lab.page.locator("[data-runs]")).to_have_count(0, timeout=PATIENCE)
     assert differing(lab.picture(CANVAS), both) > 0.02
