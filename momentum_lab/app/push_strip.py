@@ -11,13 +11,13 @@ import viser
 # How often the marks move while time runs, s.
 _PERIOD = 1.0
 # The slider's row: what stands right of its track, and left of it, in its own lengths.
-_LEFT, _RIGHT = "calc(var(--mantine-spacing-xs) + 2px)", "calc(3rem + 2 * var(--mantine-spacing-xs) + 2px)"
+_LEFT, _RIGHT = "calc(var(--mantine-spacing-xs) + 4px)", "calc(3rem + 2 * var(--mantine-spacing-xs) + 4px)"
 _PUSH = "var(--mantine-color-dimmed)"
 # The words of the slider go into this line, and their place to the slider itself.
 _WIDE_NEXT = (
     '<span class="lab-wide"></span><style>'
     "div:has(>.lab-wide)+* .mantine-Flex-root>div:has(>*>label){"
-    "width:0!important;height:0;padding:0;overflow:hidden}</style>"
+    "width:0!important;height:0;padding:0!important;overflow:hidden}</style>"
 )
 
 
@@ -61,7 +61,6 @@ def in_html(words: str, places: Sequence[float]) -> str:
     note = f'<span style="color:{_PUSH}">▮</span> push' if places else ""
     return (
         f'{_WIDE_NEXT}<div class="lab-strip" style="margin:0 {_RIGHT} 0 {_LEFT};font-size:.8em">'
-        f'<div style="display:flex;justify-content:space-between;color:{_PUSH}">'
-        f"<span>{words}</span><span>{note}</span></div>"
+        f'<div style="display:flex;gap:1.5em;color:{_PUSH}"><span>{words}</span><span>{note}</span></div>'
         f'<div style="position:relative;height:.7em">{marks}</div></div>'
     )

@@ -12,6 +12,7 @@ import viser
 
 from momentum_lab.app import html, share_html
 from momentum_lab.app.exporter import made_elsewhere
+from momentum_lab.app.kept_before import KeptBefore
 from momentum_lab.app.wire import Opened, RunTaken, Truth
 from momentum_lab.errors import LabError
 from momentum_lab.run_file import Run, decoded, encoded
@@ -46,6 +47,8 @@ class Sharing:
         view: a picture of what the browser shows, as a PNG file.
         film: a run as an .mp4 file; it is told the fraction that is done, and ends when that raises an error.
         url: where the lab is served.
+        take_back: puts the run before the opened one on stage again.
+        say: tells a person what has happened.
     """
 
     take: Callable[[bool], RunTaken]
@@ -55,6 +58,8 @@ class Sharing:
     view: Callable[[], bytes]
     film: Callable[[RunTaken, Callable[[float], None]], bytes]
     url: str
+    take_back: Callable[[], None]
+    say: Callable[[str], None]
 
 
 class SharePanel:
@@ -83,6 +88,7 @@ class SharePanel:
             hint="A run file (.json, .toml) or a trace (.npz).",
         )
         self._opened = gui.add_html("")
+        self._kept = KeptBefore(gui, sharing.take_back, sharing.say, self._forget_codes)
         self._what = gui.add_dropdown(
             "file",
             tuple(_FILES),
@@ -99,8 +105,9 @@ class SharePanel:
         self._download.on_click(lambda _: self._attempt(self._save))
         address.on_update(lambda event: self._arrived(event))
 
-    def follow(self, truth: Truth) -> None:
-        """Show how far a run is that has been opened."""
+    def follow(self, truth: Truth, left: tuple[str, ...] = ()) -> None:
+        """Show how far a run is that has been opened, and what can be taken back."""
+        self._kept.follow(truth, left)
         text = "" if truth.opened is None else html.sentence(opened_words(truth.opened))
         if text != self._told:
             self._told = self._opened.content = text
@@ -122,10 +129,18 @@ class SharePanel:
         self._code.content = share_html.code(code, link(self._sharing.url, code))
 
     def _open_code(self, text: str) -> None:
-        self._sharing.open(from_code(text))
+        self._open(from_code(text))
 
     def _open_file(self, file: Any) -> None:
-        self._sharing.open(decoded(file.name, file.content))
+        self._open(decoded(file.name, file.content))
+
+    def _open(self, run: Run) -> None:
+        self._sharing.open(run)
+        self._forget_codes()
+
+    def _forget_codes(self) -> None:
+        """Another run is on stage: codes of the one before would be taken for its own."""
+        self._code.content = self._pasted.value = ""
 
     def _arrived(self, event: Any) -> None:
         if event.client is not None and event.target.value:

@@ -177,9 +177,9 @@ def forgotten_words(pushes: tuple[float, ...]) -> str:
         return ""
     times = ", ".join(f"{start:.2f} s" for start in pushes[:_NAMED])
     if len(pushes) == 1:
-        return f"Going on from here forgets the push at {times}: push again."
+        return f"This forgets the push at {times}."
     more = f" and {len(pushes) - _NAMED} more" if len(pushes) > _NAMED else ""
-    return f"Going on from here forgets the pushes at {times}{more}: push again."
+    return f"This forgets the pushes at {times}{more}."
 
 
 _BITS = {True: ", with the same bits", False: ", with other bits", None: ""}

@@ -134,6 +134,10 @@ class Visitor:
         self._demo.demo.touch()
         self._link.ask(event)
 
+    def say(self, words: str) -> None:
+        """Show what has happened."""
+        self._client.add_notification("Done", words, auto_close_seconds=8.0, color="blue")
+
     def tell(self, words: str) -> None:
         """Show a notice."""
         self._client.add_notification("Not possible", words, auto_close_seconds=8.0, color="orange")
@@ -244,6 +248,8 @@ class Visitor:
             lambda: view_of(self._client),
             self._film,
             self._url,
+            self._link.take_back,
+            self.say,
         )
 
     def _film(self, taken: RunTaken, report: Callable[[float], None]) -> bytes:
@@ -295,7 +301,7 @@ class Visitor:
         panels.status.follow(truth, told(frame, sample, loaded), sample.number("time"))
         panels.control.follow(truth)
         panels.learn.follow(truth, sample.number("time"), frame.lesson)
-        panels.share.follow(truth)
+        panels.share.follow(truth, frame.left)
         panels.ground.follow(truth)
         panels.mismatch.follow(truth)
         panels.control.see(sample)

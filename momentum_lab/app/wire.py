@@ -30,6 +30,10 @@ class OpenRun(msgspec.Struct, frozen=True, tag=True):
     run: Run
 
 
+class TakeBack(msgspec.Struct, frozen=True, tag=True):
+    """Put the run on stage again that was there before another was opened."""
+
+
 class RunWanted(msgspec.Struct, frozen=True, tag=True):
     """What has been done so far has to be told, with the recording or without."""
 
@@ -166,6 +170,7 @@ class Frame(msgspec.Struct, frozen=True, tag=True):
         other: the robot beside the first; None when there is none.
         foreseen: what a push would do, once for every robot and question.
         demo: whether this is a scene that the lab plays by itself.
+        left: the runs that can be taken back, in words, the last one last.
     """
 
     truth: Truth
@@ -177,6 +182,7 @@ class Frame(msgspec.Struct, frozen=True, tag=True):
     other: Other | None = None
     foreseen: tuple[Foreseen, ...] = ()
     demo: bool = False
+    left: tuple[str, ...] = ()
 
 
 class RunTaken(msgspec.Struct, frozen=True, tag=True):
@@ -201,7 +207,7 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
     com_speed: float
 
 
-Message = events.Event | LessonEvent | DemoEvent | FrameTaken | FrameWanted | OpenRun | RunWanted
+Message = events.Event | LessonEvent | DemoEvent | FrameTaken | FrameWanted | OpenRun | TakeBack | RunWanted
 Answer = Frame | RunTaken
 
 _encoder = msgspec.msgpack.Encoder()

@@ -29,6 +29,7 @@ from momentum_lab.app.wire import (
     OpenRun,
     Other,
     RunWanted,
+    TakeBack,
     Truth,
     packed,
     unpacked_message,
@@ -136,7 +137,7 @@ class Worker:
             case _:
                 self._take(message)
 
-    def _take(self, event: Event | LessonEvent | DemoEvent | OpenRun) -> None:
+    def _take(self, event: Event | LessonEvent | DemoEvent | OpenRun | TakeBack) -> None:
         before = self._playback
         run, playing, ticks = before.run, before.playing, before.session.ticks
         try:
@@ -204,6 +205,7 @@ class Worker:
             other=self._other(truth),
             foreseen=self._foreseen,
             demo=self._room.in_demo,
+            left=self._room.left,
         )
         self._history.clear()
         self._other_history.clear()

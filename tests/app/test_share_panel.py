@@ -27,6 +27,7 @@ class Desk:
         self.playback = Playback(Scenario("My run!", robot="g1"))
         self.address = FakeHandle(value="")
         self.lines, self.stops = [], False
+        self.said, self.taken_back = [], []
         sharing = Sharing(
             self.playback.taken,
             self.opened.append,
@@ -35,6 +36,8 @@ class Desk:
             lambda: b"picture",
             self.film,
             URL,
+            lambda: self.taken_back.append(True),
+            self.said.append,
         )
         self.panel = SharePanel(self.gui, sharing, self.address)
 
@@ -82,6 +85,32 @@ def test_codes_are_opened_from_the_field_and_from_the_address(desk):
     desk.address.set_by_person(to_code(run))
     assert desk.opened == [run, run]
     assert desk.told == []
+
+
+def test_a_code_of_the_run_before_does_not_stay(desk):
+    desk.do("Make a code")
+    assert desk.code
+    desk.gui.widgets["code"].value = to_code(Run(Scenario("other")))
+    desk.do("Open the code")
+    assert desk.gui.html[1].content == ""
+    assert desk.gui.widgets["code"].value == ""
+
+
+def test_what_was_before_is_told_once_and_can_be_taken_back(desk):
+    button, truth = desk.gui.widgets["Take back"], desk.playback.truth(1.0)
+    desk.panel.follow(truth, ())
+    assert not button.visible
+    for _ in range(3):
+        desk.panel.follow(truth, ("mine until 7.02 s",))
+    assert desk.said == ["Opened My run!. mine until 7.02 s is kept: Take back, in the Share tab."]
+    assert button.visible
+    desk.do("Make a code")
+    button.set_by_person(True)
+    assert desk.taken_back == [True]
+    assert desk.gui.html[1].content == ""  # a code of the opened run
+    desk.panel.follow(truth, ())
+    assert not button.visible
+    assert len(desk.said) == 1
 
 
 def test_files_are_opened(desk):

@@ -172,9 +172,9 @@ def places(bar: Bar) -> list[float]:
 def test_what_going_on_would_forget_is_said_before(bar):
     bar.show(STANDING, behind=1.0, playing=False)
     assert "forgets" not in bar.text
-    assert "forgets the push at 1.50 s: push again." in bar.show(STANDING, forgotten=(1.5,))
+    assert "This forgets the push at 1.50 s." in bar.show(STANDING, forgotten=(1.5,))
     many = bar.show(STANDING, forgotten=(1.5, 2.0, 3.0, 4.0, 5.0))
-    assert "forgets the pushes at 1.50 s, 2.00 s, 3.00 s and 2 more" in many
+    assert "This forgets the pushes at 1.50 s, 2.00 s, 3.00 s and 2 more" in many
     assert "forgets" not in bar.show(STANDING, behind=0.0, forgotten=())
 
 
