@@ -10,6 +10,9 @@ from momentum_lab.app import html
 from momentum_lab.app.wire import Truth
 
 
+WAY_BACK = "Take back, in the Share tab, returns to it"
+
+
 class KeptBefore:
     """One line and a button, while there is something to take back.
 
@@ -50,8 +53,8 @@ class KeptBefore:
             return
         before, self._left = self._left, left
         if left and len(left) >= len(before):
-            self._say(f"Opened {truth.scenario}. {left[-1]} is kept: Take back, in the Share tab.")
-        self._line.content = html.sentence(f"Kept: {left[-1]}.") if left else ""
+            self._say(f"{truth.scenario} is open now. Your run ({left[-1]}) is kept: {WAY_BACK}.")
+        self._line.content = html.sentence(f"Kept: your run ({left[-1]}).") if left else ""
         self._line.visible = self._button.visible = bool(left)
 
     def _back(self) -> None:

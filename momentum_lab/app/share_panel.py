@@ -49,6 +49,7 @@ class Sharing:
         url: where the lab is served.
         take_back: puts the run before the opened one on stage again.
         say: tells a person what has happened.
+        warn: tells a person what is wrong, until it is closed: a page that loads may take longer than a notice.
     """
 
     take: Callable[[bool], RunTaken]
@@ -60,6 +61,7 @@ class Sharing:
     url: str
     take_back: Callable[[], None]
     say: Callable[[str], None]
+    warn: Callable[[str], None]
 
 
 class SharePanel:
@@ -112,7 +114,7 @@ class SharePanel:
         if text != self._told:
             self._told = self._opened.content = text
 
-    def _attempt(self, act: Callable[[], None]) -> None:
+    def _attempt(self, act: Callable[[], None], tell: Callable[[str], None] | None = None) -> None:
         """Do something once at a time; what is wrong with it is told, and the session goes on."""
         if not self._busy.acquire(blocking=False):
             self._sharing.tell("One thing at a time: the last file is still being made.")
@@ -120,7 +122,7 @@ class SharePanel:
         try:
             act()
         except LabError as error:
-            self._sharing.tell(str(error))
+            (tell or self._sharing.tell)(str(error))
         finally:
             self._busy.release()
 
@@ -144,7 +146,10 @@ class SharePanel:
 
     def _arrived(self, event: Any) -> None:
         if event.client is not None and event.target.value:
-            self._attempt(lambda: self._open_code(event.target.value))
+            self._attempt(lambda: self._open_code(event.target.value), self._of_the_address)
+
+    def _of_the_address(self, problem: str) -> None:
+        self._sharing.warn(f"The address of this page opens no run. {problem}")
 
     def _save(self) -> None:
         kind, end = _FILES[self._what.value]

@@ -135,8 +135,12 @@ class Visitor:
         self._link.ask(event)
 
     def say(self, words: str) -> None:
-        """Show what has happened."""
-        self._client.add_notification("Done", words, auto_close_seconds=8.0, color="blue")
+        """Show which run has been opened."""
+        self._client.add_notification("Run opened", words, auto_close_seconds=8.0, color="blue")
+
+    def warn(self, words: str) -> None:
+        """Show a notice that stays until it is closed."""
+        self._client.add_notification("Not possible", words, color="orange")
 
     def tell(self, words: str) -> None:
         """Show a notice."""
@@ -250,6 +254,7 @@ class Visitor:
             self._url,
             self._link.take_back,
             self.say,
+            self.warn,
         )
 
     def _film(self, taken: RunTaken, report: Callable[[float], None]) -> bytes:

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from momentum_lab.app.kept_before import WAY_BACK
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.share_panel import SharePanel, Sharing, file_name, opened_words
 from momentum_lab.app.wire import Opened, RunTaken
@@ -27,7 +28,7 @@ class Desk:
         self.playback = Playback(Scenario("My run!", robot="g1"))
         self.address = FakeHandle(value="")
         self.lines, self.stops = [], False
-        self.said, self.taken_back = [], []
+        self.said, self.warned, self.taken_back = [], [], []
         sharing = Sharing(
             self.playback.taken,
             self.opened.append,
@@ -38,6 +39,7 @@ class Desk:
             URL,
             lambda: self.taken_back.append(True),
             self.said.append,
+            self.warned.append,
         )
         self.panel = SharePanel(self.gui, sharing, self.address)
 
@@ -87,6 +89,14 @@ def test_codes_are_opened_from_the_field_and_from_the_address(desk):
     assert desk.told == []
 
 
+@pytest.mark.parametrize("code", ["hello", "lab1-AAAA", "lab9-x"])
+def test_an_address_that_opens_nothing_says_so_until_it_is_closed(desk, code):
+    desk.address.set_by_person(code)
+    (words,) = desk.warned
+    assert words.startswith(f"The address of this page opens no run. code: got ")
+    assert (desk.told, desk.opened) == ([], [])
+
+
 def test_a_code_of_the_run_before_does_not_stay(desk):
     desk.do("Make a code")
     assert desk.code
@@ -102,7 +112,7 @@ def test_what_was_before_is_told_once_and_can_be_taken_back(desk):
     assert not button.visible
     for _ in range(3):
         desk.panel.follow(truth, ("mine until 7.02 s",))
-    assert desk.said == ["Opened My run!. mine until 7.02 s is kept: Take back, in the Share tab."]
+    assert desk.said == [f"My run! is open now. Your run (mine until 7.02 s) is kept: {WAY_BACK}."]
     assert button.visible
     desk.do("Make a code")
     button.set_by_person(True)
