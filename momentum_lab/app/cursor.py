@@ -18,6 +18,9 @@ SERIES: dict[str, Any] = {
 }
 """How the line is drawn."""
 
+BELOW, ABOVE = -1.0, 2.0
+"""What is not in sight, where 0 and 1 are the edges."""
+
 
 def end_around(cursor: float) -> float:
     """Where the window of the plots ends so that the cursor has curves on both sides, s; infinity without one."""
@@ -25,9 +28,12 @@ def end_around(cursor: float) -> float:
 
 
 def cursor_line(times: np.ndarray, cursor: float) -> np.ndarray:
-    """The line over the times of the curves (n,): it rises from one sample to the next, less than a pixel away."""
-    line = np.full(len(times), np.nan)
-    if math.isfinite(cursor) and len(times) > 1:
-        at = min(max(1, int(np.searchsorted(times, cursor))), len(times) - 1)
-        line[at - 1 : at + 1] = 0.0, 1.0
+    """The line over the times of the curves (n,), nowhere without a cursor.
+
+    It lies below the plot until the cursor and above it from there on, so that its rise is all that is seen; uPlot
+    would connect values across gaps.
+    """
+    line = np.full(len(times), BELOW)
+    if math.isfinite(cursor):
+        line[min(max(1, int(np.searchsorted(times, cursor))), len(times) - 1) :] = ABOVE
     return line

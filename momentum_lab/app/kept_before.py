@@ -9,7 +9,6 @@ import viser
 from momentum_lab.app import html
 from momentum_lab.app.wire import Truth
 
-
 WAY_BACK = "Take back, in the Share tab, returns to it"
 
 

@@ -19,9 +19,7 @@ class LeftRuns:
     @property
     def names(self) -> tuple[str, ...]:
         """What they are, the last one last."""
-        return tuple(
-            f"{each.session.scenario.name} until {each.session.time:.2f} s" for each in self._left
-        )
+        return tuple(f"{each.session.scenario.name} until {each.session.time:.2f} s" for each in self._left)
 
     def open(self, stage: Playback, run: Run) -> Playback:
         """A run to put on stage in place of what is there, which is kept if anything has been done in it.

@@ -188,6 +188,11 @@ class Playback:
         self.foresights = ()
         return answers
 
+    @property
+    def foreseen_part(self) -> float | None:
+        """How much of what is being foreseen is done, from 0 to 1; None when nothing is."""
+        return min((foresight.part for foresight in self.foresights), default=None)
+
     def _look_back(self, ticks: int) -> None:
         """Look at an earlier sample, the oldest that there is if that is too far."""
         self._behind = min(max(0, ticks), len(self.session.recording) - 1)

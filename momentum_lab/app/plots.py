@@ -162,7 +162,11 @@ class Plots:
     def _other_rests(self) -> bool:
         """Whether nothing changes in the curves of a robot beside the first."""
         beside = self._beside
-        return beside is None or not len(beside) or at_rest(beside.curves(self._direction, cursor.end_around(self._looked_at)))
+        return (
+            beside is None
+            or not len(beside)
+            or at_rest(beside.curves(self._direction, cursor.end_around(self._looked_at)))
+        )
 
     def draw(self) -> None:
         """Draw what there is."""

@@ -80,7 +80,7 @@ class SharePanel:
         gui.add_html(html.sentence(_INTRODUCTION))
         make = gui.add_button("Make a code", icon=viser.Icon.QRCODE, hint="Of the run as it is now.")
         self._code = gui.add_html("")
-        self._pasted = gui.add_text("code", "", hint="A code, or an address that ends in one.")
+        self._pasted: Any = gui.add_text("code", "", hint="A code, or an address that ends in one.")
         open_code = gui.add_button("Open the code", color="gray", icon=viser.Icon.FOLDER_OPEN)
         upload = gui.add_upload_button(
             "Open a run file",
@@ -142,7 +142,8 @@ class SharePanel:
 
     def _forget_codes(self) -> None:
         """Another run is on stage: codes of the one before would be taken for its own."""
-        self._code.content = self._pasted.value = ""
+        self._code.content = ""
+        self._pasted.value = ""
 
     def _arrived(self, event: Any) -> None:
         if event.client is not None and event.target.value:

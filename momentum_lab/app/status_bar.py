@@ -92,13 +92,14 @@ class StatusBar:
         """Play what is paused, pause what plays."""
         self._post(Pause() if self._playing else Play())
 
-    def follow(self, truth: Truth, status: Status, simulated: float) -> None:
+    def follow(self, truth: Truth, status: Status, simulated: float, tried: str = "") -> None:
         """Show how the robot is doing.
 
         Args:
             truth: what is the case.
             status: the most important thing to say about the latest sample.
             simulated: its time, s.
+            tried: what there is to say about a push that is only tried.
         """
         if truth.playing != self._playing:
             self._playing = truth.playing
@@ -126,7 +127,7 @@ class StatusBar:
         )
         self._write("time", self._time, line)
         down = truth.fall is not None or truth.stopped is not None
-        self._write("sentence", self._sentence, html.sentence(_sentence(truth) or self._invitation))
+        self._write("sentence", self._sentence, html.sentence(tried or _sentence(truth) or self._invitation))
         self._sentence.visible, self._stand_up.visible = not down, down
 
     def invite(self, on: bool) -> None:

@@ -303,7 +303,6 @@ class Visitor:
 
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
         truth = frame.truth
-        panels.status.follow(truth, told(frame, sample, loaded), sample.number("time"))
         panels.control.follow(truth)
         panels.learn.follow(truth, sample.number("time"), frame.lesson)
         panels.share.follow(truth, frame.left)
@@ -319,6 +318,8 @@ class Visitor:
             panels.plots.along(truth.push.direction[:2])
         panels.plots.add(rows_of(frame.history, loaded.layout.width))
         self._comparison.after(frame, sample, panels.runs, panels.plots)
+        tried = self._comparison.tried(frame.foreseeing)
+        panels.status.follow(truth, told(frame, sample, loaded), sample.number("time"), tried)
         panels.plots.look_at(sample.number("time") if truth.behind else math.inf)
         if not truth.playing:
             panels.plots.draw()  # nothing comes later that could show the last samples

@@ -169,6 +169,7 @@ class Frame(msgspec.Struct, frozen=True, tag=True):
         lesson: how far the lesson has come, if that is new.
         other: the robot beside the first; None when there is none.
         foreseen: what a push would do, once for every robot and question.
+        foreseeing: how much of what is being foreseen is done, from 0 to 1; None when nothing is.
         demo: whether this is a scene that the lab plays by itself.
         left: the runs that can be taken back, in words, the last one last.
     """
@@ -181,6 +182,7 @@ class Frame(msgspec.Struct, frozen=True, tag=True):
     lesson: LessonNews | None = None
     other: Other | None = None
     foreseen: tuple[Foreseen, ...] = ()
+    foreseeing: float | None = None
     demo: bool = False
     left: tuple[str, ...] = ()
 

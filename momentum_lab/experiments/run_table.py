@@ -13,6 +13,7 @@ from momentum_lab.finished import FinishedRun
 MOST_ROWS = 10_000
 """More than a spreadsheet likes."""
 
+
 def table(run: FinishedRun, most: int = MOST_ROWS) -> bytes:
     """The run as a CSV file, SI units, world axes.
 

@@ -51,7 +51,9 @@ def test_a_run_that_cannot_be_opened_changes_nothing(g1: RobotModel) -> None:
     room = Classroom(mine(g1))
     stage = room.stage
     with pytest.raises(InputError, match="magic"):
-        room.take(OpenRun(Run(Scenario("bad", robot="g1"), (LoggedEvent(3, SetGain("magic", 1.0)),), ticks=9)))
+        room.take(
+            OpenRun(Run(Scenario("bad", robot="g1"), (LoggedEvent(3, SetGain("magic", 1.0)),), ticks=9))
+        )
     assert room.stage is stage
     assert room.left == ()
     with pytest.raises(InputError, match="take back: got no run"):

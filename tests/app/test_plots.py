@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from momentum_lab.app.cursor import ABOVE, BELOW
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.series import WINDOW
 from tests.app.fakes import FakeGui
@@ -255,17 +256,18 @@ def test_an_instant_that_is_looked_at_is_a_line_and_what_came_after_it_stays(des
     desk.plots.add(rows)
     desk.plots.draw()
     whole = [handle.data for handle in desk.handles]
-    assert all(np.isnan(data[-2][1:]).all() for data in whole)  # nobody looks back
+    assert all((data[-2][:-1] == BELOW).all() for data in whole)  # nobody looks back
     desk.plots.look_at(float(rows[20][0]))
     for handle, before in zip(desk.handles, whole, strict=True):
         assert len(handle.series) == len(handle.data)
         curves = zip(handle.data[1:-2], before[1:-2], strict=True)
         assert all(np.array_equal(now, then, equal_nan=True) for now, then in curves)
-        drawn = np.flatnonzero(np.isfinite(handle.data[-2][1:])) + 1
-        assert handle.data[-2][drawn].tolist() == [0.0, 1.0]
-        assert handle.data[0][drawn[-1]] == rows[20][0]
+        time, line = handle.data[0][:-1], handle.data[-2][:-1]
+        assert (line == np.where(time < rows[20][0], BELOW, ABOVE)).all()
+        assert BELOW < min(handle.scales["push"]["range"])
+        assert ABOVE > max(handle.scales["push"]["range"])
     desk.plots.look_at(np.inf)
-    assert np.isnan(desk.handles[0].data[-2][1:]).all()
+    assert (desk.handles[0].data[-2][:-1] == BELOW).all()
 
 
 def test_of_a_long_run_the_window_is_around_the_instant(desk, pushed):

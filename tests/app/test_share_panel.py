@@ -93,7 +93,7 @@ def test_codes_are_opened_from_the_field_and_from_the_address(desk):
 def test_an_address_that_opens_nothing_says_so_until_it_is_closed(desk, code):
     desk.address.set_by_person(code)
     (words,) = desk.warned
-    assert words.startswith(f"The address of this page opens no run. code: got ")
+    assert words.startswith("The address of this page opens no run. code: got ")
     assert (desk.told, desk.opened) == ([], [])
 
 

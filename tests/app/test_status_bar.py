@@ -61,6 +61,12 @@ def test_it_invites_before_the_first_push_and_tells_the_last_one_after_it(bar):
     assert "50 N for 100 ms 30° from forward on the left hand." in text
 
 
+def test_a_push_that_is_tried_is_told_instead_of_the_invitation(bar):
+    bar.bar.follow(bar.truth, STANDING, 0.1, "Trying the push on a copy: 40 %.")
+    assert "Trying the push on a copy: 40 %." in bar.text
+    assert INVITATION not in bar.text
+
+
 def test_a_short_saturation_stays_readable(bar):
     bar.show(STANDING)
     assert "angular goal gives way by 88 N m" in bar.show(BORDER)

@@ -56,7 +56,9 @@ EVENTS = [
 ]
 
 
-@pytest.mark.parametrize("message", [*EVENTS, FrameTaken(), FrameWanted(), TakeBack()], ids=lambda m: type(m).__name__)
+@pytest.mark.parametrize(
+    "message", [*EVENTS, FrameTaken(), FrameWanted(), TakeBack()], ids=lambda m: type(m).__name__
+)
 def test_messages(message):
     assert unpacked_message(packed(message)) == message
 
