@@ -14,9 +14,8 @@ _PERIOD = 1.0
 _LEFT, _RIGHT = "calc(var(--mantine-spacing-xs) + 4px)", "calc(3rem + 2 * var(--mantine-spacing-xs) + 4px)"
 _PUSH = "var(--mantine-color-dimmed)"
 # The words of the slider go into this line, and their place to the slider itself.
-_WIDE_NEXT = (
-    '<span class="lab-wide"></span><style>'
-    "div:has(>.lab-wide)+* .mantine-Flex-root>div:has(>*>label){"
+_WIDE = (
+    "<style>div:has(>.lab-look)+* .mantine-Flex-root>div:has(>*>label){"
     "width:0!important;height:0;padding:0!important;overflow:hidden}</style>"
 )
 
@@ -54,13 +53,13 @@ class PushStrip:
 def in_html(words: str, places: Sequence[float]) -> str:
     """The line: words, and a mark at each place, in percent of the slider from its left end."""
     marks = "".join(
-        f'<span data-push style="position:absolute;left:{place:.1f}%;bottom:0;width:4px;height:.7em;'
+        f'<span data-push style="position:absolute;left:{place:.1f}%;bottom:0;width:4px;height:.8em;'
         f'margin-left:-2px;background:{_PUSH}"></span>'
         for place in places
     )
     note = f'<span style="color:{_PUSH}">▮</span> push' if places else ""
     return (
-        f'{_WIDE_NEXT}<div class="lab-strip" style="margin:0 {_RIGHT} 0 {_LEFT};font-size:.8em">'
-        f'<div style="display:flex;gap:1.5em;color:{_PUSH}"><span>{words}</span><span>{note}</span></div>'
-        f'<div style="position:relative;height:.7em">{marks}</div></div>'
+        f'{_WIDE}<div class="lab-strip" style="margin:0 {_RIGHT} -.3em {_LEFT};position:relative;height:1.2em;'
+        f'font-size:.8em;line-height:1.2;display:flex;gap:1.5em;color:{_PUSH}">'
+        f"<span>{words}</span><span>{note}</span>{marks}</div>"
     )

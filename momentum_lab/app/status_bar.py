@@ -11,6 +11,7 @@ import viser
 from momentum_lab.app import html
 from momentum_lab.app.push_strip import PushStrip
 from momentum_lab.app.series import KEPT
+from momentum_lab.app.time_bar import cell
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
 from momentum_lab.events import Branch, LookBack, Pause, Play, Reset, SetSpeed, StepOnce
@@ -29,6 +30,10 @@ _REACHES = (5.0, 10.0, 20.0, 40.0, KEPT)
 # How often the figures change, s.
 _PERIOD = 0.1
 _LOOK_BACK = "look back (s)"
+_GO_ON = (
+    "With the gains and the controller of now. What was done later is forgotten; "
+    "pushes of the scenario or of an opened run come again."
+)
 # So many pushes are named, the others counted.
 _NAMED = 3
 
@@ -51,15 +56,22 @@ class StatusBar:
         self._next = -math.inf
         self._texts: dict[str, str] = {}
         gui.add_html(html.TITLE)
+        gui.add_html(cell("status"))
         self._status = gui.add_html(html.status_line("standing", "standing", "green"))
+        gui.add_html(cell("time"))
         self._time = gui.add_html("")
+        gui.add_html(cell("words"))
         self._sentence = gui.add_html(html.sentence(INVITATION))
         self._stand_up = gui.add_button(
             "Stand up again  (R)", color=(0, 114, 178), icon=viser.Icon.ARROW_UP, visible=False
         )
+        gui.add_html(cell("buttons"))
         self._buttons = gui.add_button_group("time", _buttons(playing=True))
+        gui.add_html(cell("speed"))
         speeds = gui.add_button_group("speed", tuple(_SPEEDS))
+        gui.add_html(cell("strip"))
         self._strip = PushStrip(gui, _LOOK_BACK, clock)
+        gui.add_html(cell("look"))
         self._look_back: Bound[float] = Bound(
             gui.add_slider(
                 _LOOK_BACK,
@@ -75,14 +87,8 @@ class StatusBar:
             clock,
         )
         self._branch = gui.add_button(
-            "Go on from here  (B)",
-            color=(0, 114, 178),
-            icon=viser.Icon.GIT_BRANCH,
-            visible=False,
-            hint="With the gains and the controller of now. What was done later is forgotten; "
-            "pushes of the scenario or of an opened run come again.",
+            branch_words(()), color=(0, 114, 178), icon=viser.Icon.GIT_BRANCH, visible=False, hint=_GO_ON
         )
-        self._warning = gui.add_html("", visible=False)
         self._stand_up.on_click(lambda _: post(Reset()))
         self._buttons.on_click(lambda event: self._pressed(event.target.value))
         self._branch.on_click(lambda _: post(Branch()))
@@ -128,7 +134,8 @@ class StatusBar:
         self._write("time", self._time, line)
         down = truth.fall is not None or truth.stopped is not None
         self._write("sentence", self._sentence, html.sentence(tried or _sentence(truth) or self._invitation))
-        self._sentence.visible, self._stand_up.visible = not down, down
+        self._sentence.visible = not down and truth.behind == 0.0
+        self._stand_up.visible = down and truth.behind == 0.0
 
     def invite(self, on: bool) -> None:
         """Whether a robot that nobody has pushed is to be pushed."""
@@ -142,9 +149,10 @@ class StatusBar:
 
     def _warn(self, forgotten: tuple[float, ...]) -> None:
         """Say beforehand what going on from here forgets."""
-        self._write("warning", self._warning, html.sentence(forgotten_words(forgotten)))
-        if self._warning.visible != bool(forgotten):
-            self._warning.visible = bool(forgotten)
+        words = branch_words(forgotten)
+        if self._branch.label != words:
+            self._branch.label = words
+            self._branch.hint = f"{_GO_ON}{forgotten_words(forgotten)}"
 
     def _readable(self, status: Status, now: float, playing: bool) -> Status:
         """The status, or one that has not been readable long enough yet."""
@@ -172,15 +180,22 @@ def _buttons(playing: bool) -> tuple[str, ...]:
     return ("Pause" if playing else "Play", _SMALL, _LARGE, _STAND_UP)
 
 
-def forgotten_words(pushes: tuple[float, ...]) -> str:
-    """Which pushes of a hand, s of the run, are not repeated."""
-    if not pushes:
+def branch_words(forgotten: tuple[float, ...]) -> str:
+    """What the button to go on says, given the pushes of a hand that are not repeated, s of the run."""
+    if not forgotten:
+        return "Go on from here  (B)"
+    if len(forgotten) == 1:
+        return f"Go on without the push at {forgotten[0]:.2f} s  (B)"
+    return f"Go on without {len(forgotten)} later pushes  (B)"
+
+
+def forgotten_words(forgotten: tuple[float, ...]) -> str:
+    """When those pushes were, in a sentence."""
+    if not forgotten:
         return ""
-    times = ", ".join(f"{start:.2f} s" for start in pushes[:_NAMED])
-    if len(pushes) == 1:
-        return f"This forgets the push at {times}."
-    more = f" and {len(pushes) - _NAMED} more" if len(pushes) > _NAMED else ""
-    return f"This forgets the pushes at {times}{more}."
+    times = ", ".join(f"{start:.2f} s" for start in forgotten[:_NAMED])
+    more = f" and {len(forgotten) - _NAMED} more" if len(forgotten) > _NAMED else ""
+    return f" Forgotten: pushed at {times}{more}."
 
 
 _BITS = {True: ", with the same bits", False: ", with other bits", None: ""}

@@ -175,13 +175,18 @@ def places(bar: Bar) -> list[float]:
     return [float(place) for place in re.findall(r"data-push[^>]*left:([0-9.]+)%", strip)]
 
 
-def test_what_going_on_would_forget_is_said_before(bar):
+def test_what_going_on_would_forget_is_on_the_button(bar):
+    button = bar.gui.widgets["Go on from here  (B)"]
     bar.show(STANDING, behind=1.0, playing=False)
-    assert "forgets" not in bar.text
-    assert "This forgets the push at 1.50 s." in bar.show(STANDING, forgotten=(1.5,))
-    many = bar.show(STANDING, forgotten=(1.5, 2.0, 3.0, 4.0, 5.0))
-    assert "This forgets the pushes at 1.50 s, 2.00 s, 3.00 s and 2 more" in many
-    assert "forgets" not in bar.show(STANDING, behind=0.0, forgotten=())
+    assert button.label == "Go on from here  (B)"
+    bar.show(STANDING, forgotten=(1.5,))
+    assert button.label == "Go on without the push at 1.50 s  (B)"
+    bar.show(STANDING, forgotten=(1.5, 2.0, 3.0, 4.0, 5.0))
+    assert button.label == "Go on without 5 later pushes  (B)"
+    assert "Forgotten: pushed at 1.50 s, 2.00 s, 3.00 s and 2 more." in button.hint
+    bar.show(STANDING, behind=0.0, forgotten=())
+    assert button.label == "Go on from here  (B)"
+    assert "Forgotten" not in button.hint
 
 
 def test_the_slider_reaches_as_far_back_as_there_is(bar):
