@@ -51,3 +51,8 @@ def forgotten(session: Session, tick: int, coming: Sequence[LoggedEvent]) -> tup
         if not isinstance(before, LetGo) and not (pulled and isinstance(before, HoldPush)):
             times.append((entry.tick - start) * session.scenario.timestep)
     return tuple(times)
+
+
+def is_handled(coming: Iterable[LoggedEvent]) -> bool:
+    """Whether a push that is held now is moved or let go by what an opened run does later."""
+    return any(isinstance(entry.event, HoldPush | LetGo) for entry in coming)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from momentum_lab.app.beginnings import forgotten
+from momentum_lab.app.beginnings import forgotten, is_handled
 from momentum_lab.app.companion import Companion
 from momentum_lab.app.foresight import Foresight
 from momentum_lab.app.opened import NOTHING_OPENED, OpenedRun
@@ -18,6 +18,7 @@ from momentum_lab.events import (
     Event,
     Foresee,
     HoldPush,
+    LetGo,
     LoadScenario,
     LookBack,
     MoveGround,
@@ -217,6 +218,8 @@ class Playback:
         self._waiting.clear()
         for event in self.session.choices_after(self._waiting).until(chosen):
             self._pass_on(event)
+        if self.session.holds and not is_handled(self._opened.coming(self.session)):
+            self._post(LetGo())  # whoever held it has let go in what is forgotten
         self.tick(1)
 
     def _cue(self) -> None:

@@ -25,8 +25,8 @@ _DIRECTIONS = {0: "forward", 90: "to the left", 180: "backward", 270: "to the ri
 # A status that says more than "standing" stays readable for this long, s.
 _READABLE = 0.9
 _PASSING = frozenset({"border", "lifted", "solver"})
-# How far the slider reaches back: to the next of these behind the start of the run, s.
-_REACHES = (5.0, 10.0, 20.0, 40.0, KEPT)
+# The slider reaches back to the next multiple of this behind the start of the run, s.
+_REACH = 5.0
 # How often the figures change, s.
 _PERIOD = 0.1
 _LOOK_BACK = "look back (s)"
@@ -75,7 +75,7 @@ class StatusBar:
         self._look_back: Bound[float] = Bound(
             gui.add_slider(
                 _LOOK_BACK,
-                -_REACHES[0],
+                -_REACH,
                 0.0,
                 0.01,
                 0.0,
@@ -111,13 +111,13 @@ class StatusBar:
             self._playing = truth.playing
             self._buttons.options = _buttons(truth.playing)
             self._next = -math.inf
-        reach = next((reach for reach in _REACHES if simulated + truth.behind <= reach), KEPT)
+        end = simulated + truth.behind
+        reach = min(KEPT, _REACH * max(1, math.ceil(end / _REACH)))
         if self._look_back.handle.min != -reach:
             self._look_back.handle.min = -reach
         self._look_back.follow(-truth.behind)
         self._branch.visible = truth.behind > 0.0
         self._warn(truth.forgotten)
-        end = simulated + truth.behind
         self._strip.follow([end - start for start in truth.pushed], reach, truth.playing)
         now = self._clock()
         if now < self._next and truth.playing:
@@ -184,9 +184,8 @@ def branch_words(forgotten: tuple[float, ...]) -> str:
     """What the button to go on says, given the pushes of a hand that are not repeated, s of the run."""
     if not forgotten:
         return "Go on from here  (B)"
-    if len(forgotten) == 1:
-        return f"Go on without the push at {forgotten[0]:.2f} s  (B)"
-    return f"Go on without {len(forgotten)} later pushes  (B)"
+    pushes = "push" if len(forgotten) == 1 else "pushes"
+    return f"Go on without {len(forgotten)} later {pushes}  (B)"
 
 
 def forgotten_words(forgotten: tuple[float, ...]) -> str:

@@ -25,6 +25,7 @@ from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
 from momentum_lab.app.marks import FEW_LABELS, Theme
+from momentum_lab.app.notices import Notices
 from momentum_lab.app.overlays import Picture, overlays
 from momentum_lab.app.page_plan import PagePlan
 from momentum_lab.app.panels import Panels
@@ -104,7 +105,7 @@ class Visitor:
         self._link = Link(first, choices.robots, choices.scenarios)
         self._stage: Stage | None = None
         self._panels: Panels | None = None
-        self._comparison = Comparison(client)
+        self._comparison, self._notices = Comparison(client), Notices(client)
         self._demo = DemoStage(client, self._link.ask, self._robot, demo)
         self._run = -1
         self._floor: tuple[float, Theme] = (0.0, "light")
@@ -136,17 +137,9 @@ class Visitor:
         self._demo.demo.touch()
         self._link.ask(event)
 
-    def say(self, words: str) -> None:
-        """Show which run has been opened."""
-        self._client.add_notification("Run opened", words, auto_close_seconds=8.0, color="blue")
-
-    def warn(self, words: str) -> None:
-        """Show a notice that stays until it is closed."""
-        self._client.add_notification("Not possible", words, color="orange")
-
     def tell(self, words: str) -> None:
         """Show a notice."""
-        self._client.add_notification("Not possible", words, auto_close_seconds=8.0, color="orange")
+        self._notices.tell(words)
 
     def close(self) -> None:
         """End the session and the drawing: the tab has been closed."""
@@ -256,8 +249,8 @@ class Visitor:
             self._film,
             self._url,
             self._link.take_back,
-            self.say,
-            self.warn,
+            self._notices.say,
+            self._notices.warn,
         )
 
     def _film(self, taken: RunTaken, report: Callable[[float], None]) -> bytes:

@@ -65,3 +65,35 @@ def test_an_opened_run_pushes_again():
     mine.tick(20)
     mine.take(LookBack(9.0))
     assert mine.truth(1.0).forgotten == pytest.approx((0.041,))
+
+
+def test_a_hand_that_is_forgotten_lets_go():
+    """Going on from the middle of a pull: nobody is there any more to end it."""
+    playback = Playback(Scenario("s", robot="g1"))
+    playback.take(HoldPush(Push(force=10.0)))
+    playback.tick(60)
+    playback.take(LetGo())
+    playback.tick(60)
+    playback.take(LookBack(0.09))
+    at = playback.shown.number("time")
+    playback.take(Branch())
+    playback.tick(200)
+    (push,) = playback.session.pushes
+    assert push.start + push.duration == pytest.approx(at)
+    assert not playback.session.holds
+
+
+def test_an_opened_run_lets_go_when_it_did():
+    theirs = Playback(Scenario("theirs", robot="g1"))
+    theirs.take(HoldPush(Push(force=10.0)))
+    theirs.tick(60)
+    theirs.take(LetGo())
+    theirs.tick(60)
+    mine = Playback(Scenario("mine", robot="g1"))
+    mine.take(OpenRun(theirs.taken(False).run))
+    mine.tick(200)
+    mine.take(LookBack(0.09))
+    mine.take(Branch())
+    mine.tick(200)
+    assert mine.session.log == theirs.session.log
+    assert mine.truth(1.0).opened.agrees is not False

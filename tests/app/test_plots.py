@@ -264,8 +264,8 @@ def test_an_instant_that_is_looked_at_is_a_line_and_what_came_after_it_stays(des
         assert all(np.array_equal(now, then, equal_nan=True) for now, then in curves)
         time, line = handle.data[0][:-1], handle.data[-2][:-1]
         assert (line == np.where(time < rows[20][0], BELOW, ABOVE)).all()
-        assert BELOW < min(handle.scales["push"]["range"])
-        assert ABOVE > max(handle.scales["push"]["range"])
+        assert min(handle.scales["push"]["range"]) > BELOW
+        assert max(handle.scales["push"]["range"]) < ABOVE
     desk.plots.look_at(np.inf)
     assert (desk.handles[0].data[-2][:-1] == BELOW).all()
 
