@@ -71,7 +71,7 @@ def names_of(first: Truth, second: Truth) -> tuple[str, str]:
 
 def push_in_words(push: Push) -> str:
     """Force, duration and direction, and what else a push says."""
-    words = f"{push.force or 0.0:.0f} N, {1e3 * push.duration:.0f} ms, {push.direction_deg:.0f}°"
+    words = f"{push.force or 0.0:.0f} N, {1e3 * push.duration:.0f} ms, {push.direction_deg:.0f}°{push.tilt}"
     if push.height is not None:
         words += f", {push.height:g} m high"
     if push.body is not None:

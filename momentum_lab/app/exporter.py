@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import multiprocessing
-import tempfile
 from collections.abc import Callable
 from multiprocessing.connection import Connection
-from pathlib import Path
 
 import msgspec
 
@@ -16,7 +15,7 @@ from momentum_lab.errors import InputError, LabError
 from momentum_lab.fall import Fall
 from momentum_lab.finished import FinishedRun
 from momentum_lab.provenance import provenance
-from momentum_lab.recording import Layout, Recording, save_trace
+from momentum_lab.recording import Layout, Recording, write_trace
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.run_file import encoded
 
@@ -104,10 +103,9 @@ def finished(taken: RunTaken) -> FinishedRun:
 
 
 def _trace(run: FinishedRun) -> bytes:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "trace.npz"
-        save_trace(run.recording, provenance(run), path)
-        return path.read_bytes()
+    file = io.BytesIO()  # a process that is stopped in the middle would leave a folder behind
+    write_trace(run.recording, provenance(run), file)
+    return file.getvalue()
 
 
 def _table(run: FinishedRun) -> bytes:

@@ -19,7 +19,6 @@ from momentum_lab.app.demo_stage import DemoStage
 from momentum_lab.app.exporter import finished
 from momentum_lab.app.film import film
 from momentum_lab.app.first_pose import FirstPose
-from momentum_lab.app.hand import Reach
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
@@ -29,6 +28,7 @@ from momentum_lab.app.overlays import Picture, overlays
 from momentum_lab.app.panels import Panels
 from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.profile import RenderProfile
+from momentum_lab.app.pulling import Reach
 from momentum_lab.app.reel import Reel
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot, RobotShelf
@@ -299,13 +299,13 @@ class Visitor:
         panels.ground.follow(truth)
         panels.mismatch.follow(truth)
         panels.control.see(sample)
-        panels.hand.playing = truth.playing
+        panels.hand.follow(truth.playing)
         panels.control.bounds.see(sample, loaded.model, truth)
         if truth.fall is None:
             panels.push.see(sample)
         panels.push.refresh()
         if truth.push is not None:
-            panels.plots.along(truth.push.direction[:2])
+            panels.plots.along(truth.push.along)
         panels.plots.add(rows_of(frame.history, loaded.layout.width))
         self._comparison.after(frame, sample, panels.runs, panels.plots)
         panels.plots.look_at(sample.number("time") if truth.behind else math.inf)

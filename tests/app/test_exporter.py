@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import tempfile
 
 import numpy as np
 import pytest
@@ -50,6 +51,11 @@ def test_a_trace_made_elsewhere(playback, taken):
     trace = load_trace(io.BytesIO(made_elsewhere("trace", taken)), "trace.npz")
     assert np.array_equal(trace.columns["com"], playback.session.recording.column("com"))
     assert run_of_trace(trace) == taken.run
+
+
+def test_a_trace_needs_no_folder_that_a_process_which_is_stopped_could_leave(taken, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", "/nowhere")
+    assert made("trace", taken).startswith(b"PK")
 
 
 def test_every_other_kind(taken):
