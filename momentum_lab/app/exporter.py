@@ -81,9 +81,14 @@ def made(kind: str, taken: RunTaken) -> bytes:
     return MAKERS[kind](finished(taken))
 
 
-def finished(taken: RunTaken) -> FinishedRun:
-    """The run as summaries and figures take it."""
-    robot = RobotModel.named(taken.run.scenario.robot)
+def finished(taken: RunTaken, robot: RobotModel | None = None) -> FinishedRun:
+    """The run as summaries and figures take it.
+
+    Args:
+        taken: the run.
+        robot: its robot, if it is loaded already.
+    """
+    robot = robot or RobotModel.named(taken.run.scenario.robot)
     layout = Layout.of(robot)
     rows = rows_of(taken.rows, layout.width)
     recording = Recording(layout, max(1, len(rows)))
@@ -99,6 +104,7 @@ def finished(taken: RunTaken) -> FinishedRun:
         None if taken.fall is None else Fall(taken.fall.time, taken.fall.reason),
         taken.failures,
         taken.com_speed,
+        None if taken.other is None else finished(taken.other, robot),
     )
 
 

@@ -61,12 +61,12 @@ def film(client: viser.ClientHandle, reel: Reel, settings: ViewSettings, report:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "film.mp4"
         with (
-            encoder(path, (shot.width, shot.height), 1.0 / reel.step) as write,
+            encoder(path, (shot.width, shot.height), reel.rate) as write,
             _studio(client, reel, settings) as scene,
         ):
-            for i, sample in enumerate(reel.samples):
+            for i in range(len(reel.rows)):
                 with client.atomic():
-                    scene.draw(sample)
+                    scene.draw(i)
                 write(_taken(client, shot))
                 report((i + 1) / len(reel.rows))
         return path.read_bytes()
