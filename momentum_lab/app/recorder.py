@@ -13,7 +13,7 @@ from viser.infra import StateSerializer
 from momentum_lab.app.camera import (
     FIELD_OF_VIEW,
     START_VIEW,
-    USUAL_ASPECT,
+    USUAL,
     VIEWS,
     camera_pose,
     of_two,
@@ -105,7 +105,7 @@ def _look(server: viser.ViserServer, reel: Reel) -> None:
         view = of_two(view, offset / size)
     low, high = com[:, :2].min(axis=0), com[:, :2].max(axis=0)
     view = wide_enough(view, (high - low) / size)
-    target, position = camera_pose(view, size, 0.5 * (low + high + offset), USUAL_ASPECT)
+    target, position = camera_pose(view, size, 0.5 * (low + high + offset), USUAL)
     server.initial_camera.fov = FIELD_OF_VIEW
     server.initial_camera.position = position
     server.initial_camera.look_at = target

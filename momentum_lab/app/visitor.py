@@ -25,6 +25,7 @@ from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
 from momentum_lab.app.marks import FEW_LABELS, Theme
 from momentum_lab.app.overlays import Picture, overlays
+from momentum_lab.app.page_plan import PagePlan
 from momentum_lab.app.panels import Panels
 from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.profile import RenderProfile
@@ -99,6 +100,7 @@ class Visitor:
         self._url, self._library, self._lesson = url, library, lesson
         self._client, self._shelf, self._profile = client, shelf, profile
         self._choices, self._pose = choices, pose
+        self._plan = PagePlan.of(client)
         self._link = Link(first, choices.robots, choices.scenarios)
         self._stage: Stage | None = None
         self._panels: Panels | None = None
@@ -107,6 +109,8 @@ class Visitor:
         self._run = -1
         self._floor: tuple[float, Theme] = (0.0, "light")
         self._left = False
+        # A browser has only so much time for drawing: none of it goes to what moves while it draws a film.
+        self._filming = threading.Event()
         self.frames = 0
         self.latest: Frame | None = None
         self._thread = threading.Thread(target=self._live, name=f"visitor-{client.client_id}", daemon=True)
@@ -184,9 +188,7 @@ class Visitor:
         if truth.run != self._run:
             self._run = truth.run
             panels.plots.clear()
-        with self._client.atomic():  # or a picture could be sent in two halves
-            self._draw_scene(stage, panels, truth, sample)
-            changed = self._comparison.draw(frame, sample, panels.settings)
+        changed = not self._filming.is_set() and self._draw_picture(stage, panels, frame, sample)
         if changed:
             self._look(START_VIEW)
             self._reach_other(panels, stage)
@@ -203,7 +205,7 @@ class Visitor:
             self._stage.marks.remove()
             self._stage.plates.remove()
         body = RobotScene(self._client, loaded, q)
-        marks, camera = MarkScene(self._client, size), Camera(self._client, size)
+        marks, camera = MarkScene(self._client, size), Camera(self._client, size, self._plan.covered)
         plates = PlateScene(self._client, loaded.model)
         self._stage = Stage(name, loaded, body, marks, plates, camera, size)
         self._look(START_VIEW)
@@ -214,6 +216,7 @@ class Visitor:
     def _furnish(self, truth: Truth, feet: tuple[str, ...]) -> Panels:
         self._panels = Panels(
             self._client,
+            self._plan,
             self.post,
             self.tell,
             self._look,
@@ -246,12 +249,17 @@ class Visitor:
             self._url,
         )
 
-    def _film(self, taken: RunTaken, report: Callable[[float], None]) -> bytes:
-        """A run as this tab would show it, as an .mp4 file."""
+    def _film(self, taken: RunTaken, lines: int, report: Callable[[float], None]) -> bytes:
+        """A run as this tab would show it, as an .mp4 file; the tab's own picture stands still meanwhile."""
         if self._panels is None:
             raise InputError("film", "a page without panels", "a page that has been loaded")
         reel = Reel.of(finished(taken), self._shelf.get(taken.run.scenario.robot))
-        return film(self._client, reel, self._panels.settings, report)
+        self._filming.set()
+        try:
+            return film(self._client, reel, self._panels.settings, lines, report)
+        finally:
+            self._filming.clear()
+            self._link.want_frame()
 
     def _receive(self, panels: Panels, stage: Stage) -> None:
         """Fit the panels to the robot on stage."""
@@ -261,6 +269,12 @@ class Visitor:
         panels.begin_plots(stage.loaded)
         panels.ground.set_feet(stage.loaded.layout.foot_names)
         panels.settings.changed = True
+
+    def _draw_picture(self, stage: Stage, panels: Panels, frame: Frame, sample: Sample) -> bool:
+        """Draw both robots; whether the second one has come or gone."""
+        with self._client.atomic():  # or a picture could be sent in two halves
+            self._draw_scene(stage, panels, frame.truth, sample)
+            return self._comparison.draw(frame, sample, panels.settings)
 
     def _draw_scene(self, stage: Stage, panels: Panels, truth: Truth, sample: Sample) -> None:
         settings = panels.settings
