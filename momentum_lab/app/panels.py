@@ -23,6 +23,7 @@ from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET
 from momentum_lab.app.mismatch_panel import MismatchPanel
 from momentum_lab.app.page_plan import LEFT, RIGHT, PagePlan
 from momentum_lab.app.plots import Plots
+from momentum_lab.app.pulling import Pulling
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.runs_panel import RunsPanel
@@ -90,7 +91,8 @@ class Panels:
         with group.add_tab("Push"):
             self.push = PushPanel(gui, post, tell, redraw)
             SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
-            self.hand = Hand(client, self.push, self.settings, post, tell, lambda: sharing.take(False).pushes)
+            pulling = Pulling(client, self.push, self.settings, post, lambda: sharing.take(False).pushes)
+            self.hand = Hand(self.push.hand, pulling, tell)
             self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control"):
             self.control = ControlPanel(gui, post, tell, choices, truth)
@@ -128,7 +130,7 @@ class Panels:
         self._gui, self._group, self._roomy = gui, group, plan.roomy
         self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, self._lesson_opened, truth)
         self.learn.start(lesson)
-        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs)
+        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
 
     def begin_plots(self, robot: LoadedRobot) -> None:
         """Start with empty plots for a robot."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from momentum_lab.app.beginnings import forgotten, is_handled
 from momentum_lab.app.companion import Companion
 from momentum_lab.app.foresight import Foresight
@@ -163,8 +165,12 @@ class Playback:
         return forgotten(self.session, tick, self._opened.events) if self._behind else ()
 
     def taken(self, recording: bool) -> RunTaken:
-        """The run as it is now, with its samples or without; a robot beside the first is in its scenario."""
-        return taken_of(self.session, self._waiting, self._difference, recording)
+        """The run as it is now, with the samples of both robots or without; the second is in its scenario."""
+        taken = taken_of(self.session, self._waiting, self._difference, recording)
+        if self.beside is None or not recording:
+            return taken
+        other = taken_of(self.beside.session, self.beside.waiting, None, recording)
+        return msgspec.structs.replace(taken, other=other)
 
     @property
     def _difference(self) -> Beside | None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -32,7 +34,10 @@ _FILES = {
     "recording to play (.html)": ("recording", "-recording.html"),
     "recording (.viser)": ("viser", ".viser"),
     "film (.mp4)": ("film", ".mp4"),
+    "small film (.mp4)": ("small film", ".mp4"),
 }
+# Height of a film, pixels.
+_FILMS = {"film": 720, "small film": 360}
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +50,8 @@ class Sharing:
         tell: shows a person what was wrong.
         send: lets the browser save a file of a name.
         view: a picture of what the browser shows, as a PNG file.
-        film: a run as an .mp4 file; it is told the fraction that is done, and ends when that raises an error.
+        film: a run as an .mp4 file so many pixels high; it tells the fraction that is done, and ends when that
+            raises an error.
         url: where the lab is served.
         take_back: puts the run before the opened one on stage again.
         say: tells a person what has happened.
@@ -57,7 +63,7 @@ class Sharing:
     tell: Callable[[str], None]
     send: Callable[[str, bytes], None]
     view: Callable[[], bytes]
-    film: Callable[[RunTaken, Callable[[float], None]], bytes]
+    film: Callable[[RunTaken, int, Callable[[float], None]], bytes]
     url: str
     take_back: Callable[[], None]
     say: Callable[[str], None]
@@ -94,7 +100,8 @@ class SharePanel:
         self._what = gui.add_dropdown(
             "file",
             tuple(_FILES),
-            hint="All but the run file hold the last minute since the robot stood up, and of two robots the first.",
+            hint="All but the run file hold the last minute since the robot stood up. Pictures, recordings and "
+            "films show both robots, the others the first.",
         )
         self._download = gui.add_button("Download", color="gray", icon=viser.Icon.DOWNLOAD)
         self._progress = gui.add_html("", visible=False)
@@ -166,14 +173,14 @@ class SharePanel:
     def _content(self, kind: str, taken: RunTaken) -> bytes:
         if kind == "view":
             return self._sharing.view()
-        if kind == "film":
-            return self._film(taken)
+        if kind in _FILMS:
+            return self._film(taken, _FILMS[kind])
         return encoded(taken.run) if kind == "run" else made_elsewhere(kind, taken)
 
-    def _film(self, taken: RunTaken) -> bytes:
+    def _film(self, taken: RunTaken, lines: int) -> bytes:
         self._stopped.clear()
         self._stop.visible = True
-        percents = set[int]()
+        percents, begun = set[int](), time.monotonic()
 
         def report(fraction: float) -> None:
             if self._stopped.is_set():
@@ -181,10 +188,12 @@ class SharePanel:
             percent = int(100.0 * fraction)
             if percent not in percents:
                 percents.add(percent)
-                self._show(f"film: {percent} % of its pictures taken, keep this tab in sight.")
+                self._show(
+                    f"film: {percent} % taken{_left(fraction, begun)}. Keep this tab in sight; it draws the film."
+                )
 
         try:
-            return self._sharing.film(taken, report)
+            return self._sharing.film(taken, lines, report)
         finally:
             self._stop.visible = False
 
@@ -198,6 +207,12 @@ def file_name(run: Run) -> str:
     """A name for files about a run: small letters, digits, hyphens."""
     words = f"{run.scenario.name}-{run.scenario.robot.removesuffix('.toml').rpartition('/')[2]}"
     return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")[:80] or "run"
+
+
+def _left(fraction: float, begun: float) -> str:
+    """How long a film still takes, for people, if it goes on as since it was begun."""
+    seconds = (time.monotonic() - begun) * (1.0 / fraction - 1.0) if fraction else 0.0
+    return f", {math.ceil(seconds / 60.0)} min to go" if seconds > 90.0 else f", {seconds:.0f} s to go"
 
 
 def opened_words(opened: Opened) -> str:

@@ -209,4 +209,6 @@ def _sentence(truth: Truth) -> str:
         return ""
     towards = _DIRECTIONS.get(round(push.direction_deg) % 360, f"{push.direction_deg:.0f}° from forward")
     where = "" if push.body is None else f" on the {push.body.replace('_', ' ')}"
-    return f"Last push: {push.force or 0.0:.0f} N for {1e3 * push.duration:.0f} ms {towards}{where}."
+    return (
+        f"Last push: {push.force or 0.0:.0f} N for {1e3 * push.duration:.0f} ms {towards}{push.tilt}{where}."
+    )

@@ -91,14 +91,17 @@ def truth_of(
 def taken_of(
     session: Session, waiting: Sequence[SessionEvent], beside: Beside | None, recording: bool
 ) -> RunTaken:
-    """The run as it is now, with its samples or without; a robot beside the first is in its scenario."""
+    """The run as it is now, with its samples or without; what waits for the next tick counts as done.
+
+    A robot beside the first is in its scenario.
+    """
     run = run_of(session, waiting)
     scenario = msgspec.structs.replace(run.scenario, beside=beside)
     return RunTaken(
         run=msgspec.structs.replace(run, scenario=scenario),
         rows=session.recording.rows().tobytes() if recording else b"",
         time=session.time,
-        pushes=session.pushes,
+        pushes=session.pushes_after(waiting),
         fall=_fallen(session, session.time),
         failures=session.solver_failures,
         com_speed=com_speed(session),

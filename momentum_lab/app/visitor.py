@@ -19,7 +19,6 @@ from momentum_lab.app.demo_stage import DemoStage
 from momentum_lab.app.exporter import finished
 from momentum_lab.app.film import film
 from momentum_lab.app.first_pose import FirstPose
-from momentum_lab.app.hand import Reach
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
@@ -31,6 +30,7 @@ from momentum_lab.app.page_plan import PagePlan
 from momentum_lab.app.panels import Panels
 from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.profile import RenderProfile
+from momentum_lab.app.pulling import Reach
 from momentum_lab.app.reel import Reel
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot, RobotShelf
@@ -110,6 +110,8 @@ class Visitor:
         self._run = -1
         self._floor: tuple[float, Theme] = (0.0, "light")
         self._left = False
+        # A browser has only so much time for drawing: none of it goes to what moves while it draws a film.
+        self._filming = threading.Event()
         self.frames = 0
         self.latest: Frame | None = None
         self._thread = threading.Thread(target=self._live, name=f"visitor-{client.client_id}", daemon=True)
@@ -187,9 +189,7 @@ class Visitor:
         if truth.run != self._run:
             self._run = truth.run
             panels.plots.clear()
-        with self._client.atomic():  # or a picture could be sent in two halves
-            self._draw_scene(stage, panels, truth, sample)
-            changed = self._comparison.draw(frame, sample, panels.settings)
+        changed = not self._filming.is_set() and self._draw_picture(stage, panels, frame, sample)
         if changed:
             self._look(START_VIEW)
             self._reach_other(panels, stage)
@@ -253,12 +253,17 @@ class Visitor:
             self._notices.warn,
         )
 
-    def _film(self, taken: RunTaken, report: Callable[[float], None]) -> bytes:
-        """A run as this tab would show it, as an .mp4 file."""
+    def _film(self, taken: RunTaken, lines: int, report: Callable[[float], None]) -> bytes:
+        """A run as this tab would show it, as an .mp4 file; the tab's own picture stands still meanwhile."""
         if self._panels is None:
             raise InputError("film", "a page without panels", "a page that has been loaded")
         reel = Reel.of(finished(taken), self._shelf.get(taken.run.scenario.robot))
-        return film(self._client, reel, self._panels.settings, report)
+        self._filming.set()
+        try:
+            return film(self._client, reel, self._panels.settings, lines, report)
+        finally:
+            self._filming.clear()
+            self._link.want_frame()
 
     def _receive(self, panels: Panels, stage: Stage) -> None:
         """Fit the panels to the robot on stage."""
@@ -268,6 +273,12 @@ class Visitor:
         panels.begin_plots(stage.loaded)
         panels.ground.set_feet(stage.loaded.layout.foot_names)
         panels.settings.changed = True
+
+    def _draw_picture(self, stage: Stage, panels: Panels, frame: Frame, sample: Sample) -> bool:
+        """Draw both robots; whether the second one has come or gone."""
+        with self._client.atomic():  # or a picture could be sent in two halves
+            self._draw_scene(stage, panels, frame.truth, sample)
+            return self._comparison.draw(frame, sample, panels.settings)
 
     def _draw_scene(self, stage: Stage, panels: Panels, truth: Truth, sample: Sample) -> None:
         settings = panels.settings
@@ -305,13 +316,13 @@ class Visitor:
         panels.ground.follow(truth)
         panels.mismatch.follow(truth)
         panels.control.see(sample)
-        panels.hand.playing = truth.playing
+        panels.hand.follow(truth.playing)
         panels.control.bounds.see(sample, loaded.model, truth)
         if truth.fall is None:
             panels.push.see(sample)
         panels.push.refresh()
         if truth.push is not None:
-            panels.plots.along(truth.push.direction[:2])
+            panels.plots.along(truth.push.along)
         panels.plots.add(rows_of(frame.history, loaded.layout.width))
         self._comparison.after(frame, sample, panels.runs, panels.plots)
         tried = self._comparison.tried(frame.foreseeing)

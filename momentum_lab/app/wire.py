@@ -198,6 +198,7 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
         fall: when and why the robot has fallen; None: it has not.
         failures: how many solves have failed.
         com_speed: of the CoM against the ground under the feet at the end, m/s.
+        other: the robot beside the first; None when there is none, or no samples were wanted.
     """
 
     run: Run
@@ -207,6 +208,7 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
     fall: Fallen | None
     failures: int
     com_speed: float
+    other: RunTaken | None = None
 
 
 Message = events.Event | LessonEvent | DemoEvent | FrameTaken | FrameWanted | OpenRun | TakeBack | RunWanted

@@ -92,10 +92,12 @@ def test_every_number_has_a_unit_or_says_that_it_has_none(client):
 
 
 def test_help_explains_every_key_of_the_palette(client):
-    hotkeys = [props["hotkey"] for props in kept(client).props("RegisterCommandMessage") if props["hotkey"]]
-    assert len(set(hotkeys)) == len(hotkeys)
-    assert set(hotkeys) == keys_in_help()
-    assert not set(hotkeys) & {"Space", " ", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"}
+    commands = [props for props in kept(client).props("RegisterCommandMessage") if props["hotkey"]]
+    pressed = [(props["hotkey"], props["modifier"]) for props in commands]
+    assert len(set(pressed)) == len(pressed)
+    hotkeys = {props["hotkey"] for props in commands}
+    assert hotkeys == keys_in_help()
+    assert not hotkeys & {"Space", " ", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"}
 
 
 def test_a_page_names_its_widgets_and_listens_for_a_person(client):

@@ -108,8 +108,8 @@ def open_page(browser: Browser) -> Iterator[Opener]:
         if message.type == "error" and not message.text.startswith((CROSSED, PASSIVE)):
             errors.append(message.text)
 
-    def open_page(url: str, width: int = 1280, height: int = 800) -> LabPage:
-        page = browser.new_page(viewport={"width": width, "height": height})
+    def open_page(url: str, width: int = 1280, height: int = 800, fingers: bool = False) -> LabPage:
+        page = browser.new_page(viewport={"width": width, "height": height}, has_touch=fingers)
         opened.append(page)
         page.on("console", note)
         page.on("pageerror", lambda error: errors.append(str(error)))
