@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from momentum_lab.app.marks import Color
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.viewer import Viewer
+from momentum_lab.palette import Color
 
 _FREE_FLYER = 1
 _SEE_THROUGH = 0.3

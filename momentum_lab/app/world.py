@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from momentum_lab.app.marks import Color, Theme
+from momentum_lab.app.marks import Theme
 from momentum_lab.app.profile import RenderProfile
 from momentum_lab.app.viewer import Viewer
+from momentum_lab.palette import Color
 
 # Of the floor, its lines every 10 cm, its lines every metre.
 _COLORS: dict[Theme, tuple[Color, Color, Color]] = {
