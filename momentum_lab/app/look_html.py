@@ -15,10 +15,10 @@ _OPEN = "[role=button][aria-label^='Collapse panel ']"
 # What a hand has unfolded comes into sight; it lies below everything else.
 _UNFOLD = (
     "(()=>{if(window.labUnfolds)return;window.labUnfolds=true;"
-    "const show=left=>{const open=document.querySelector(`" + _OPEN + "`);"
-    "if(open)open.scrollIntoView();else if(left)setTimeout(show,150,left-1)};"
-    f"const seen=e=>{{if(e.target.closest?.(`{_BAR}`))setTimeout(show,300,20)}};"
-    "addEventListener('click',seen,true);addEventListener('keydown',seen,true)})()"
+    f"const show=left=>{{document.querySelector(`{_OPEN}`)?.scrollIntoView();"
+    "if(left)setTimeout(show,200,left-1)};"  # it grows for a while
+    f"const seen=e=>{{if(e.target.closest?.(`{_BAR}`))setTimeout(show,200,4)}};"
+    "window.addEventListener('click',seen,true);window.addEventListener('keydown',seen,true)})()"
 )
 
 STYLE = (
