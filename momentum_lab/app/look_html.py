@@ -15,9 +15,11 @@ _OPEN = "[role=button][aria-label^='Collapse panel ']"
 # What a hand has unfolded comes into sight; it lies below everything else.
 _UNFOLD = (
     "(()=>{if(window.labUnfolds)return;window.labUnfolds=true;"
-    f"const show=left=>{{document.querySelector(`{_OPEN}`)?.scrollIntoView();"
-    "if(left)setTimeout(show,200,left-1)};"  # it grows for a while
-    f"const seen=e=>{{if(e.target.closest?.(`{_BAR}`))setTimeout(show,200,4)}};"
+    f"const show=left=>{{const open=document.querySelector(`{_OPEN}`);open?.scrollIntoView();"
+    "const top=open?.closest('[data-scrollarea-viewport]')?.getBoundingClientRect().top;"
+    # It grows for a while, and cannot be scrolled to its place before.
+    "if(left&&!(open?.getBoundingClientRect().top<top+60))setTimeout(show,200,left-1)};"
+    f"const seen=e=>{{if(e.target.closest?.(`{_BAR}`))setTimeout(show,200,15)}};"
     "window.addEventListener('click',seen,true);window.addEventListener('keydown',seen,true)})()"
 )
 
