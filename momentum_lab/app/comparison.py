@@ -145,15 +145,15 @@ class Comparison:
         beside = Sample.of(loaded.layout, rows_of(other.row, loaded.layout.width)[0])
         if self._side is None:
             self._side = SideScene(self._client, loaded, beside)
-            self._side.see_through(settings.see_through)
+            self._side.see_through(settings)
         self._side.draw(beside, other.truth, settings)
         names = other.names or names_of(first, other.truth)
         self._side.name(names, (sample["com"], beside["com"]))
 
-    def see_through(self, on: bool) -> None:
-        """Whether marks inside a body show."""
+    def see_through(self, settings: ViewSettings) -> None:
+        """Whether marks inside a body show, as a person has chosen."""
         if self._side is not None:
-            self._side.see_through(on)
+            self._side.see_through(settings)
 
     def _note_push(self) -> None:
         """Remember the choices under which the robots were pushed."""

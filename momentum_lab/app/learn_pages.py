@@ -102,7 +102,7 @@ class NumberPage(Page):
         gui, step, self._place = self._desk.gui, self._step, self._walk.place
         self._shown = gui.add_html("")
         middle = 0.5 * (step.low + step.high)
-        unit = f" ({step.unit.translate(str.maketrans('/', '∕'))})" if step.unit else ""
+        unit = f" ({step.unit})" if step.unit else ""
         width = nice_step(step.low, step.high, middle)
         start = self._walk.answers.get(self._place, middle)
         self._slider: Any = gui.add_slider(f"I predict{unit}", step.low, step.high, width, start)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import viser
 
-from momentum_lab.app import access_html, html, share_html
+from momentum_lab.app import access_html, html, look_html, share_html
 from momentum_lab.app.appearance import Appearance, dress
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.demo_panel import DemoPanel
@@ -108,6 +108,7 @@ class Panels:
         demo.furnish()
         appearance.add_ear(gui)
         gui.add_html(access_html.NAMES)
+        gui.add_html(look_html.STYLE)
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         left = gui.add_panel()
         # The browser opens the first tab.
@@ -128,9 +129,11 @@ class Panels:
             (left.minimize if lesson is None else left.expand)()
 
         self._gui, self._group, self._roomy = gui, group, plan.roomy
+        # The list of commands has them in this order: what is used most comes first.
+        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
         self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, self._lesson_opened, truth)
         self.learn.start(lesson)
-        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
+        demo.listen()
 
     def begin_plots(self, robot: LoadedRobot) -> None:
         """Start with empty plots for a robot."""

@@ -11,9 +11,10 @@ import numpy as np
 import viser
 
 from momentum_lab.app import cursor, html
-from momentum_lab.app.marks import BLUE, GREEN, GREY, ORANGE, PURPLE, STYLES, Color
+from momentum_lab.app.marks import STYLES
 from momentum_lab.app.second_curves import POINTS, curves_at
 from momentum_lab.app.series import WINDOW, Curves, History
+from momentum_lab.palette import ADMISSIBLE, ANGULAR, DESIRED, GREY, LINEAR, MEASURED, Color
 from momentum_lab.recording import Layout
 from momentum_lab.robot.model import RobotModel
 
@@ -25,11 +26,11 @@ _HEIGHT = 100
 _UNSEEN = 1e-5
 _AXIS = {"font": "10px sans-serif", "gap": 2, "ticks": {"size": 3}}
 _POINTS = ("com", "cop", "cmp", "capture")
-# What is asked for is grey and dashed, what the ground may give blue, what it gave green like the GRF.
+# What is asked for is dashed.
 _KINDS: dict[str, tuple[Color, list[int]]] = {
-    "desired": (GREY, [6, 4]),
-    "admissible": (BLUE, []),
-    "measured": (GREEN, []),
+    "desired": (DESIRED, [6, 4]),
+    "admissible": (ADMISSIBLE, []),
+    "measured": (MEASURED, []),
 }
 
 
@@ -66,31 +67,35 @@ class Plots:
         self._linear = _plot(
             gui,
             "Rate of linear momentum along the push (N)",
-            [*_rates(), _kept_line(GREEN)],
+            [*_rates(), _kept_line(MEASURED)],
             soft=_SOFT["linear"],
         )
         self._angular = _plot(
             gui,
             "Rate of angular momentum about the axis across (N m)",
-            [*_rates(), _kept_line(GREEN)],
+            [*_rates(), _kept_line(MEASURED)],
             soft=_SOFT["angular"],
         )
         self._momenta = _plot(
             gui,
             "Momentum: linear (N s), angular (kg m²/s)",
             [
-                _line("linear, along the push", ORANGE),
-                _line("angular, about the axis across", PURPLE),
-                _kept_line(ORANGE),
-                _kept_line(PURPLE),
+                _line("linear, along the push", LINEAR),
+                _line("angular, about the axis across", ANGULAR),
+                _kept_line(LINEAR),
+                _kept_line(ANGULAR),
             ],
             soft=_SOFT["momenta"],
         )
 
         # Plots, and what a robot beside the first adds to them: behind all others, so that those stay as they are.
         self._plots = (self._places, self._linear, self._angular, self._momenta)
-        thin = ([_thin_line(STYLES[name].color) for name in POINTS], [_thin_line(GREEN)], [_thin_line(GREEN)])
-        self._thin = (*thin, [_thin_line(ORANGE), _thin_line(PURPLE)])
+        thin = (
+            [_thin_line(STYLES[name].color) for name in POINTS],
+            [_thin_line(MEASURED)],
+            [_thin_line(MEASURED)],
+        )
+        self._thin = (*thin, [_thin_line(LINEAR), _thin_line(ANGULAR)])
 
     def begin(self, robot: RobotModel, layout: Layout) -> None:
         """Start with empty plots for a robot."""

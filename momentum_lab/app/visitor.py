@@ -284,8 +284,8 @@ class Visitor:
         settings = panels.settings
         if settings.changed:
             settings.changed = False
-            stage.body.see_through(settings.see_through)
-            self._comparison.see_through(settings.see_through)
+            stage.body.see_through(settings.see_through, settings.theme)
+            self._comparison.see_through(settings)
         picture = Picture(
             stage.loaded.model, truth.push, truth.gains.get("safe_border", 0.0), settings.arrow_scale
         )
