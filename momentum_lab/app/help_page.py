@@ -33,7 +33,7 @@ Drag to turn the picture, right-drag to move it, scroll to come closer. **Shift 
 there: the arrow shows the force, letting go pushes (*pulse*) or ends the push (*hold*, in the Push tab).
 
 **Without a mouse.** Tab and Shift+Tab go from widget to widget, arrows move a slider, Home and End take it to its
-ends. Once the picture has the focus, W, A, S, D, Q and E move the camera; the View tab has four fixed views.
+ends. Once the picture has the focus, W, A, S, D, Q and E move the camera; the View tab has five fixed views.
 
 **With a screen reader.** Sliders say their name, value and unit; the status is read out when it changes. The 3D
 picture and the plots have a name but cannot be read: the status, the Runs table and `momentum-lab run --json` have

@@ -124,7 +124,7 @@ class Panels:
             (left.minimize if lesson is None else left.expand)()
 
         self._gui, self._group, self._roomy = gui, group, roomy
-        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, self._lesson_opened, truth)
+        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
         self.learn.start(lesson)
         add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs)
 
