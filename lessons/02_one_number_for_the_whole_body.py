@@ -83,7 +83,7 @@ STEPS = (
         0,
         40,
     ),
-    lab.Play("Watch where the green arrows stand.", "balanced", ("momenta",), beside="bare", view="Side"),
+    lab.Play("Watch where the green arrows stand.", "balanced", ("momenta",), beside="bare"),
     lab.Compare(
         "Below the first robot the arrow wandered by {balanced}, below the second by {bare}. The first tips its "
         "trunk by {trunk} as well, and the ground feels less: its parts cancel each other.",

@@ -65,7 +65,6 @@ STEPS = (
         "bend",
         ("push", "priority"),
         beside="upright",
-        view="Side",
     ),
     lab.Compare(
         "The robot that bends {bend}; its CoM went {bend_way} and came back. The one that stays upright {upright}.",

@@ -98,7 +98,7 @@ STEPS = (
             unit="N m",
             share=0.99,
         ),
-        view="Side",
+        view="Whole robot",
     ),
 )
 

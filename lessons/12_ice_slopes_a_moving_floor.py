@@ -86,7 +86,7 @@ STEPS = (
             lab.Option("Both alike", lambda m: 0.5 <= m["told"] / m["felt"] <= 2.0),
         ),
     ),
-    lab.Play("Watch CoP, CoM and feet.", "told", ("linear_stiffness",), beside="felt", view="Side"),
+    lab.Play("Watch CoP, CoM and feet.", "told", ("linear_stiffness",), beside="felt", view="Whole robot"),
     lab.Compare(
         "The CoP swayed by {cop}, the floor by {floor}. Told, the CoM strayed by {told}; by feel alone, by {felt}.",
         ("cop", "told", "felt"),
