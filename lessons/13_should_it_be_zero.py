@@ -84,7 +84,6 @@ STEPS = (
         "zero",
         ("angular goal", "momenta"),
         beside="its_own",
-        view="Whole robot",
     ),
     lab.Compare(
         "Asked for zero, the body turned by {zero}. Asked for the swing's own, by {its_own}: {left} of it. A "
