@@ -64,16 +64,18 @@ MEASURES = {
 
 STEPS = (
     lab.Prose(
-        "Two robots stand on one leg and make the same kick. The first swings its trunk and arms against the "
-        "leg. The second only keeps its CoM, the centre of mass, in its place."
+        "Two robots stand on one leg and make the same kick. The balanced one swings its trunk and arms against "
+        "the leg. The bare one only keeps its CoM, the centre of mass, in its place."
     ),
     lab.Choice(
-        "More of the first robot moves. Below which one does the green arrow, the force of the ground, wander "
-        "farther?",
+        "More of the balanced one moves. Below which of them does the green arrow, the force of the ground, "
+        "wander farther?",
         (
-            lab.Option("The first: more motion, more to feel", lambda m: m["balanced"] > 2.0 * m["bare"]),
+            lab.Option(
+                "The balanced one: more motion, more to feel", lambda m: m["balanced"] > 2.0 * m["bare"]
+            ),
             lab.Option("Both alike: it is the same kick", lambda m: 0.5 <= m["balanced"] / m["bare"] <= 2.0),
-            lab.Option("The second", lambda m: m["bare"] > 2.0 * m["balanced"]),
+            lab.Option("The bare one", lambda m: m["bare"] > 2.0 * m["balanced"]),
         ),
     ),
     lab.Number(
@@ -85,8 +87,8 @@ STEPS = (
     ),
     lab.Play("Watch where the green arrows stand.", "balanced", ("momenta",), beside="bare"),
     lab.Compare(
-        "Below the first robot the arrow wandered by {balanced}, below the second by {bare}. The first tips its "
-        "trunk by {trunk} as well, and the ground feels less: its parts cancel each other.",
+        "Below the balanced robot the arrow wandered by {balanced}, below the bare one by {bare}. The balanced one "
+        "tips its trunk by {trunk} as well, and the ground feels less: its parts cancel each other.",
         ("balanced", "bare", "felt"),
     ),
     lab.Explain(
@@ -116,12 +118,12 @@ STEPS = (
 )
 
 CLAIMS = (
-    lab.Stands("balanced", "the robot that swings its trunk"),
-    lab.Stands("bare", "the other robot"),
+    lab.Stands("balanced", "the balanced robot"),
+    lab.Stands("bare", "the bare robot"),
     lab.Bound("both kick", "kick", low=80.0),
-    lab.Bound("the arrow of the second wanders several times as far", "times", low=4.0),
-    lab.Bound("the first moves its trunk", "trunk", low=8.0),
-    lab.Bound("the second does not", "bare_trunk", high=2.0),
+    lab.Bound("the arrow of the bare one wanders several times as far", "times", low=4.0),
+    lab.Bound("the balanced one moves its trunk", "trunk", low=8.0),
+    lab.Bound("the bare one does not", "bare_trunk", high=2.0),
     lab.Bound("what parts turn forward and back cancels", "cancelled", low=90.0),
     lab.Bound("what is left is six numbers", "felt", low=6.0, high=6.0),
 )

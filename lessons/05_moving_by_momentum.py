@@ -77,7 +77,7 @@ STEPS = (
         ),
     ),
     lab.Play(
-        "You look from above, forward is up. Watch the hips. The second robot may have angular momentum.",
+        "You look from above, forward is up. Watch the hips. The free robot may have angular momentum.",
         "held",
         ("momenta",),
         beside="free",

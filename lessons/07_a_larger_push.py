@@ -48,20 +48,24 @@ MEASURES = {
 STEPS = (
     lab.Prose(
         "Two robots get a push of {push} from behind. To stop their CoM and stay upright, they would need a CoP "
-        "{asked} in front of what the feet can give. The first gives up staying upright: it brakes its CoM "
-        "all the same, and its body bends. The second stays upright and brakes less."
+        "{asked} in front of what the feet can give. One brakes its CoM all the same, and its body "
+        "bends. The other stays upright and brakes less."
     ),
     lab.Choice(
         "Same push, same feet. Which of the two falls?",
         (
             lab.Option("Neither", lambda m: m["bend"] == "stands" == m["upright"]),
-            lab.Option("The first: it gives up its posture", lambda m: m["bend"] != "stands" == m["upright"]),
-            lab.Option("The second: it brakes less", lambda m: m["upright"] != "stands" == m["bend"]),
+            lab.Option(
+                "The one that bends: it gives up its posture", lambda m: m["bend"] != "stands" == m["upright"]
+            ),
+            lab.Option(
+                "The one that stays upright: it brakes less", lambda m: m["upright"] != "stands" == m["bend"]
+            ),
             lab.Option("Both", lambda m: "stands" not in (m["bend"], m["upright"])),
         ),
     ),
     lab.Play(
-        "Watch the trunks, then the feet. Your priority is that of the first robot.",
+        "Watch the trunks, then the feet. Your priority is that of the one that bends.",
         "bend",
         ("push", "priority"),
         beside="upright",
@@ -72,8 +76,8 @@ STEPS = (
     ),
     lab.Explain(
         "The CoP ties braking to turning (Eq. 21). With the CoP stuck at the toes, the ground brakes harder only "
-        "if the body may turn. The first robot lets it turn with {bend_turns} more than it wants, and brakes "
-        "as it wants. The second does not turn, and lacks {upright_brakes} of braking.",
+        "if the body may turn. The bent one lets it turn with {bend_turns} more than it wants, and brakes as "
+        "it wants. The upright one does not turn, and lacks {upright_brakes} of braking.",
         "bend",
         END,
         lab.Equation(

@@ -67,8 +67,8 @@ STEPS = (
         beside="stiff",
     ),
     lab.Compare(
-        "With {ratio} of the stick's push the robot that turns {turning}, though its capture point was "
-        "{beyond} beyond the toes. The one that does not turn {stiff}. With {far_ratio}, turning does not "
+        "With {ratio} of the stick's push the turning robot {turning}, though its capture point was "
+        "{beyond} beyond the toes. The stiff one {stiff}. With {far_ratio}, turning does not "
         "save it: the robot {too_far}.",
         ("ratio", "far_ratio", "stiff", "beyond"),
     ),
