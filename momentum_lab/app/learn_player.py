@@ -31,6 +31,7 @@ class LessonPlayer:
         gui: where widgets go.
         post: where a hand's events go.
         ask: where a lesson's events go.
+        look: turns the camera to a named view.
         answer: what takes a prediction.
         now: who plays, and what is the case.
     """
@@ -44,16 +45,22 @@ class LessonPlayer:
         gui: viser.GuiApi,
         post: Post,
         ask: Callable[[LessonEvent], None],
+        look: Callable[[str], None],
         answer: Callable[[float], None],
         now: Callable[[], tuple[LoadedRobot, Truth]],
     ) -> None:
-        self._key, self._store, self._frame, self._ask = key, store, frame, ask
+        self._key, self._store, self._frame, self._ask, self._look = key, store, frame, ask, look
         self._desk = Desk(gui, post, ask, answer, now)
         saved = store.get(key)
         asked = {place: value for place, value in saved.answers.items() if place < len(record.steps)}
         self._walk = Walk(record, 0, {} if saved.done else asked)
         self._first = saved.step if saved.step < len(record.steps) and not saved.done else 0
         self._page: Page | None = None
+
+    @property
+    def turns(self) -> bool:
+        """Whether the lesson turns the camera."""
+        return any(step.view for step in self._walk.rehearsed.steps)
 
     def start(self) -> None:
         """Open the step at which it was left."""
@@ -118,6 +125,8 @@ class LessonPlayer:
 
     def _stage(self, walk: Walk) -> None:
         step, seen = walk.step, walk.news.seen
+        if step.view:
+            self._look(step.view)
         if step.kind == "explain":
             self._ask(ShowRun(step.run, step.time))
         elif step.kind == "play" and step.run not in seen:

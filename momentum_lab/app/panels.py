@@ -131,7 +131,7 @@ class Panels:
         self._gui, self._group, self._roomy = gui, group, plan.roomy
         # The list of commands has them in this order: what is used most comes first.
         add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
-        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, self._lesson_opened, truth)
+        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
         self.learn.start(lesson)
         demo.listen()
 

@@ -104,6 +104,7 @@ class Visitor:
         self._plan = PagePlan.of(client)
         self._link = Link(first, choices.robots, choices.scenarios)
         self._stage: Stage | None = None
+        self._view = START_VIEW
         self._panels: Panels | None = None
         self._comparison, self._notices = Comparison(client), Notices(client)
         self._demo = DemoStage(client, self._link.ask, self._robot, demo)
@@ -191,7 +192,7 @@ class Visitor:
             panels.plots.clear()
         changed = not self._filming.is_set() and self._draw_picture(stage, panels, frame, sample)
         if changed:
-            self._look(START_VIEW)
+            self._look(self._view)
             self._reach_other(panels, stage)
         self._demo.after(stage.camera, self._comparison.spread, frame.demo)
         self._client.flush()
@@ -209,7 +210,7 @@ class Visitor:
         marks, camera = MarkScene(self._client, size), Camera(self._client, size, self._plan.covered)
         plates = PlateScene(self._client, loaded.model)
         self._stage = Stage(name, loaded, body, marks, plates, camera, size)
-        self._look(START_VIEW)
+        self._look(self._view)
         if self._panels is not None:
             self._receive(self._panels, self._stage)
         return self._stage
@@ -334,8 +335,9 @@ class Visitor:
             self.tell(notice)
 
     def _look(self, name: str) -> None:
-        """Turn the camera to the robot where it is now."""
+        """Turn the camera to the robot where it is now, and to what comes on stage later."""
         stage = self._stage
+        self._view = name if name in VIEWS else self._view
         if stage is not None and name in VIEWS:
             place, spread = stage.body.place_on_ground, self._comparison.spread
             stage.camera.look(name, place if spread is None else self._comparison.middle(place), spread)
