@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from momentum_lab.app import library
+from momentum_lab.app import apart
 from momentum_lab.app.library import Library
 from momentum_lab.errors import LabError
 from momentum_lab.lesson.loader import lesson_files
@@ -56,7 +56,7 @@ def test_whatever_is_wrong_is_told_with_file_and_line(tmp_path: Path, change: tu
 
 def test_script_that_never_ends_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = written(tmp_path, ("RUNS =", "while True: pass\nRUNS ="))
-    monkeypatch.setattr(library, "_PATIENCE", 0.5)
+    monkeypatch.setattr(apart, "_PATIENCE", 0.5)
     with pytest.raises(LabError, match=r"01_leaning_in\.py:1: got no end within 0\.5 s"):
         Library(tmp_path).rehearse(path, "g1")
 
