@@ -43,8 +43,9 @@ def waiting(title: str) -> str:
 def error(words: str) -> str:
     """What is wrong with a lesson."""
     return _box(
-        f'{STYLE}{_TO_THE_TOP}<div class="err" style="color:{RED}" role="alert"><b>✖ This lesson has an error.</b><br>'
-        f'{escape(words)}</div><span class="dim">The lab goes on without it.</span>'
+        f'{STYLE}{_TO_THE_TOP}<div class="err" style="color:{RED}" role="alert">'
+        f"<b>✖ This lesson has an error.</b><br>{escape(words)}</div>"
+        '<span class="dim">The lab goes on without it.</span>'
     )
 
 

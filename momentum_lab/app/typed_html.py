@@ -1,7 +1,7 @@
 """What is typed arrives before what is pressed after it, and the lab's keys are heard in boxes of numbers, too.
 
-Viser tells of a change at most every 50 ms, and only of the last one: a button that is pressed right after a number has
-been typed would take its place. A box of a number takes no letters, but keeps them from being keys.
+Viser tells of a change at most every 50 ms, and only of the last one: a button that is pressed right after a number
+has been typed would take its place. A box of a number takes no letters, but keeps them from being keys.
 """
 
 from __future__ import annotations

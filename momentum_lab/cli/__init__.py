@@ -5,8 +5,8 @@ COMMAND: app | run | limit | report | record | replay | lesson | figure | list |
 Exit codes: 0 the command did what was asked (a robot that falls is a result, not an error), 1 something broke
 down on the way, a figure's or lesson's claim or an equation does not hold, or a checked robot falls, 2 bad
 input, 130 stopped by Ctrl+C. Bad input is one line on stderr and nothing on stdout:
-`momentum-lab: ARGUMENT: got GIVEN; allowed: ALLOWED`. A list with lessons that cannot be read still has the others on
-stdout, and a line on stderr for each that has an error.
+`momentum-lab: ARGUMENT: got GIVEN; allowed: ALLOWED`. Only `list lessons` lists what is sound beside a line for each
+lesson that is not.
 """
 
 from __future__ import annotations
@@ -122,11 +122,6 @@ def _as_typed(error: InputError, args: dict[str, Any]) -> InputError:
     return InputError(option, error.given, error.allowed)
 
 
-def complain(problem: object) -> None:
-    """One line for a person about what is wrong."""
-    print(f"momentum-lab: {problem}", file=sys.stderr)
-
-
 def _complain(problem: object, code: int) -> int:
-    complain(problem)
+    print(f"momentum-lab: {problem}", file=sys.stderr)
     return code

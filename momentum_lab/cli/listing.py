@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
@@ -11,7 +12,6 @@ import msgspec
 from rich.console import Console
 from rich.table import Table
 
-from momentum_lab.cli import BAD_INPUT, complain
 from momentum_lab.cli.arguments import KINDS
 from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.motion import MOTIONS
@@ -24,6 +24,7 @@ from momentum_lab.paths import LESSONS
 from momentum_lab.robot.catalog import load_spec, robot_names
 from momentum_lab.scenario import load_scenario, scenario_names
 
+_BAD_INPUT = 2
 # Columns of a pipe have room; only a terminal has an edge.
 _WIDE = 200
 
@@ -54,8 +55,8 @@ def list_things(args: Namespace) -> int:
     elif things:
         _show(things)
     for fault in faults:
-        complain(fault)
-    return BAD_INPUT if faults else 0
+        print(f"momentum-lab: {fault}", file=sys.stderr)
+    return _BAD_INPUT if faults else 0
 
 
 def robots() -> Things:
