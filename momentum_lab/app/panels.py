@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
 from momentum_lab.app.mismatch_panel import MismatchPanel
+from momentum_lab.app.page_plan import LEFT, RIGHT, PagePlan
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robots import LoadedRobot
@@ -29,13 +31,11 @@ from momentum_lab.app.sequence_panel import SequencePanel
 from momentum_lab.app.share_panel import SharePanel, Sharing
 from momentum_lab.app.status_bar import StatusBar
 from momentum_lab.app.tabs import Tabs
+from momentum_lab.app.time_bar import time_bar
 from momentum_lab.app.view_panel import ViewPanel, ViewSettings
 from momentum_lab.app.widgets import Post
 from momentum_lab.app.wire import Truth
 
-_RIGHT, _LEFT = 350.0, 350.0
-# Pages narrower than this, width over height, have no room for plots beside the picture or for many labels.
-_ROOMY = 1.1
 _PLOTS, _LEARN = ("Plots", viser.Icon.CHART_LINE), ("Learn", viser.Icon.SCHOOL)
 
 
@@ -44,6 +44,7 @@ class Panels:
 
     Args:
         client: the browser tab.
+        plan: what its page has room for.
         post: where events go.
         tell: shows a person what was wrong.
         look: turns the camera to a named view.
@@ -61,6 +62,7 @@ class Panels:
     def __init__(
         self,
         client: viser.ClientHandle,
+        plan: PagePlan,
         post: Post,
         tell: Callable[[str], None],
         look: Callable[[str], None],
@@ -78,11 +80,11 @@ class Panels:
         dress(gui, "light")
         gui.set_panel_label("Momentum lab")
         gui.main_panel.dock_right()
-        gui.main_panel.set_width(_RIGHT)
-        roomy = client.camera.image_width >= _ROOMY * client.camera.image_height
-        self.settings = ViewSettings(labelled=ALL_LABELS if roomy else FEW_LABELS)
+        gui.main_panel.set_width(RIGHT)
+        self.settings = ViewSettings(labelled=ALL_LABELS if plan.roomy else FEW_LABELS)
         appearance = Appearance(client, self.settings, redraw)
-        self.status = StatusBar(gui, post)
+        with time_bar(client, plan.picture) if plan.bar else contextlib.nullcontext():
+            self.status = StatusBar(gui, post)
         gui.add_html(share_html.HIDDEN_NEXT)
         address = gui.add_text("address", "")
         group = gui.add_tab_group()  # five of them fit into one line without icons
@@ -120,12 +122,12 @@ class Panels:
         self._lesson_plots: tuple[viser.GuiFormHandle, Plots] | None = None
         self._robot: LoadedRobot | None = None
         left.dock_left()
-        left.set_width(_LEFT)
-        if not roomy:
+        left.set_width(LEFT)
+        if not plan.roomy:
             # A phone shows what is folded away as one line.
             (left.minimize if lesson is None else left.expand)()
 
-        self._gui, self._group, self._roomy = gui, group, roomy
+        self._gui, self._group, self._roomy = gui, group, plan.roomy
         self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, self._lesson_opened, truth)
         self.learn.start(lesson)
         add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs)

@@ -10,7 +10,7 @@ import numpy as np
 import viser
 from viser.infra import StateSerializer
 
-from momentum_lab.app.camera import FIELD_OF_VIEW, START_VIEW, USUAL_ASPECT, VIEWS, camera_pose, wide_enough
+from momentum_lab.app.camera import FIELD_OF_VIEW, START_VIEW, USUAL, VIEWS, camera_pose, wide_enough
 from momentum_lab.app.profile import NORMAL, RenderProfile
 from momentum_lab.app.quiet import quiet
 from momentum_lab.app.reel import Reel
@@ -94,7 +94,7 @@ def _look(server: viser.ViserServer, reel: Reel) -> None:
     low, high = com.min(axis=0), com.max(axis=0)
     size = float(com[0, 2])
     view = wide_enough(VIEWS[START_VIEW], (high - low)[:2] / size)
-    target, position = camera_pose(view, size, 0.5 * (low + high)[:2], USUAL_ASPECT)
+    target, position = camera_pose(view, size, 0.5 * (low + high)[:2], USUAL)
     server.initial_camera.fov = FIELD_OF_VIEW
     server.initial_camera.position = position
     server.initial_camera.look_at = target

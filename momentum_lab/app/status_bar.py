@@ -10,6 +10,7 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.series import KEPT
+from momentum_lab.app.time_bar import cell
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
 from momentum_lab.events import Branch, LookBack, Pause, Play, Reset, SetSpeed, StepOnce
@@ -47,14 +48,20 @@ class StatusBar:
         self._next = -math.inf
         self._texts: dict[str, str] = {}
         gui.add_html(html.TITLE)
+        gui.add_html(cell("status"))
         self._status = gui.add_html(html.status_line("standing", "standing", "green"))
+        gui.add_html(cell("time"))
         self._time = gui.add_html("")
+        gui.add_html(cell("words"))
         self._sentence = gui.add_html(html.sentence(INVITATION))
         self._stand_up = gui.add_button(
             "Stand up again  (R)", color=(0, 114, 178), icon=viser.Icon.ARROW_UP, visible=False
         )
+        gui.add_html(cell("buttons"))
         self._buttons = gui.add_button_group("time", _buttons(playing=True))
+        gui.add_html(cell("speed"))
         speeds = gui.add_button_group("speed", tuple(_SPEEDS))
+        gui.add_html(cell("look"))
         self._look_back: Bound[float] = Bound(
             gui.add_slider(
                 "look back (s)",
@@ -112,7 +119,8 @@ class StatusBar:
         self._write("time", self._time, line)
         down = truth.fall is not None or truth.stopped is not None
         self._write("sentence", self._sentence, html.sentence(_sentence(truth) or self._invitation))
-        self._sentence.visible, self._stand_up.visible = not down, down
+        self._sentence.visible = not down and truth.behind == 0.0
+        self._stand_up.visible = down and truth.behind == 0.0
 
     def invite(self, on: bool) -> None:
         """Whether a robot that nobody has pushed is to be pushed."""

@@ -26,6 +26,7 @@ from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
 from momentum_lab.app.marks import FEW_LABELS, Theme
 from momentum_lab.app.overlays import Picture, overlays
+from momentum_lab.app.page_plan import PagePlan
 from momentum_lab.app.panels import Panels
 from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.profile import RenderProfile
@@ -99,6 +100,7 @@ class Visitor:
         self._url, self._library, self._lesson = url, library, lesson
         self._client, self._shelf, self._profile = client, shelf, profile
         self._choices, self._pose = choices, pose
+        self._plan = PagePlan.of(client)
         self._link = Link(first, choices.robots, choices.scenarios)
         self._stage: Stage | None = None
         self._panels: Panels | None = None
@@ -203,7 +205,7 @@ class Visitor:
             self._stage.marks.remove()
             self._stage.plates.remove()
         body = RobotScene(self._client, loaded, q)
-        marks, camera = MarkScene(self._client, size), Camera(self._client, size)
+        marks, camera = MarkScene(self._client, size), Camera(self._client, size, self._plan.covered)
         plates = PlateScene(self._client, loaded.model)
         self._stage = Stage(name, loaded, body, marks, plates, camera, size)
         self._look(START_VIEW)
@@ -214,6 +216,7 @@ class Visitor:
     def _furnish(self, truth: Truth, feet: tuple[str, ...]) -> Panels:
         self._panels = Panels(
             self._client,
+            self._plan,
             self.post,
             self.tell,
             self._look,

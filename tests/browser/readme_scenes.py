@@ -52,5 +52,5 @@ def pair(scene: Scene) -> None:
 SHOTS = (
     Shot("push", push),
     Shot("feet", feet, (), 0),
-    Shot("pair", pair, ("right",), 0),
+    Shot("pair", pair, ("right",)),
 )
