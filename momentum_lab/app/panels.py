@@ -110,7 +110,7 @@ class Panels:
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         left = gui.add_panel()
         # The browser opens the first tab; a phone has no room for plots beside the picture.
-        learn_first = lesson is not None or not roomy
+        learn_first = lesson is not None or not plan.roomy
         tabs = [
             left.add_tab(label, icon)
             for label, icon in ((_LEARN, _PLOTS) if learn_first else (_PLOTS, _LEARN))
