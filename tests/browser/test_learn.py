@@ -24,13 +24,13 @@ FIRST = "1. What the ground can do"
 @pytest.fixture
 def served_with_errors(tmp_path: Path) -> Iterator[Served]:
     """A lesson with an error in it, opened from the command line."""
-    yield from serve(tmp_path, "test", "stand", written(tmp_path, ("STEPS = (", "STEPS = = (")))
+    yield from serve(tmp_path, "coarse", "stand", written(tmp_path, ("STEPS = (", "STEPS = = (")))
 
 
 @pytest.fixture
 def served_lesson(tmp_path: Path) -> Iterator[Served]:
     """A lesson, opened from the command line."""
-    yield from serve(tmp_path, "test", "stand", find_lesson("7"))
+    yield from serve(tmp_path, "coarse", "stand", find_lesson("7"))
 
 
 def test_a_whole_lesson_by_keyboard_and_mouse_and_after_a_reload(served: Served, open_page: Opener) -> None:
@@ -112,16 +112,15 @@ def test_leaving_gives_the_own_session_back(served: Served, open_page: Opener) -
     lab = open_page(served.url).until_furnished()
     lab.press("p")
     lab.expect_text("Last push")
-    lab.press("k")
-    lab.expect_text("paused")
-    own = lab.settled_text("simulated time")
+    lab.pause()
+    own = lab.time
     open_list(lab)
     lab.click("7. A larger push")
     at_step(lab, 1)
     lab.expect_text(r"simulated time\s*0\.00 s")
     lab.click("Leave the lesson")
     lab.expect_text("Last push")
-    assert lab.settled_text("simulated time") == own
+    lab.expect_time(own)
     expect(button(lab, "Push (P)")).to_be_visible(timeout=PATIENCE)
 
 
