@@ -63,7 +63,7 @@ def first_and_later(page: Page) -> tuple[np.ndarray, np.ndarray]:
 
 
 def seen(page: Page, name: str) -> np.ndarray:
-    """What is between the notice about slow graphics and the player's bar, once a robot is at rest there (h, w, 3)."""
+    """What is between the notice about slow graphics and the player's bar, once a robot rests there (h, w, 3)."""
     end, last = time.monotonic() + PATIENCE / 1000.0, np.empty(0)
     while not (np.array_equal(shot := screen(page, name), last) and has_robot(shot)):
         assert time.monotonic() < end, "no robot that stands still"
