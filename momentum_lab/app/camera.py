@@ -12,9 +12,10 @@ FIELD_OF_VIEW = math.radians(32.0)
 # Below this width over height the controls cover the lower part of the picture.
 _NARROW = 0.62
 _COVERED = 0.62
-USUAL_ASPECT = 1.5
 # From here two robots that stand side by side are seen beside each other, degrees.
 _AZIMUTH_OF_TWO = -42.0
+# Views whose name says from where: two robots are seen from there, too, degrees.
+_FIXED = (0.0, -90.0, 180.0)
 # Beside two robots there is room for one that lies on the ground, in CoM heights.
 _ROOM_TO_FALL = 0.7
 # A picture whose width over height differs by more than this has another shape.
@@ -42,11 +43,41 @@ class View:
     width: float
 
 
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """The part of a picture that nothing covers.
+
+    Attributes:
+        aspect: width over height of the whole picture.
+        free: how much of its height can be seen, from its upper edge, 0 to 1.
+    """
+
+    aspect: float
+    free: float = 1.0
+
+    @classmethod
+    def of(cls, client: viser.ClientHandle, covered: float) -> Opening:
+        """Of a browser tab, as it tells itself.
+
+        Args:
+            client: the browser tab.
+            covered: how much of the picture a bar covers, pixels.
+        """
+        width, height = client.camera.image_width, client.camera.image_height
+        if not (width > 0 and height > 0):
+            return USUAL
+        aspect = width / height
+        return cls(aspect, 1.0 - _COVERED if aspect < _NARROW else 1.0 - covered / height)
+
+
+USUAL = Opening(1.5)
 VIEWS = {
     "Whole robot": View(azimuth=-62.0, elevation=11.0, low=-0.12, high=2.05, width=1.5),
     "Feet": View(azimuth=-62.0, elevation=32.0, low=-0.2, high=0.3, width=0.62),
     "Side": View(azimuth=-90.0, elevation=4.0, low=-0.12, high=2.05, width=1.5),
     "Front": View(azimuth=0.0, elevation=8.0, low=-0.12, high=2.05, width=1.5),
+    # Forward is up.
+    "Above": View(azimuth=180.0, elevation=78.0, low=0.3, high=1.7, width=1.5),
 }
 START_VIEW = "Whole robot"
 
@@ -76,13 +107,19 @@ class Camera:
     Args:
         client: the browser tab.
         size: height of the robot's CoM, m.
+        covered: how much of the lower part of the picture a bar covers, pixels.
     """
 
-    def __init__(self, client: viser.ClientHandle, size: float) -> None:
-        self._client, self._size = client, size
+    def __init__(self, client: viser.ClientHandle, size: float, covered: float = 0.0) -> None:
+        self._client, self._size, self._covered = client, size, covered
         self._center = np.zeros(2)
         # How two robots were last looked at: which view, their distance, the shape of the picture.
         self._looked: tuple[str, np.ndarray, float] | None = None
+
+    @property
+    def opening(self) -> Opening:
+        """What of the picture can be seen now."""
+        return Opening.of(self._client, self._covered)
 
     def look(self, name: str, center: np.ndarray, spread: np.ndarray | None = None) -> None:
         """Take a named view.
@@ -92,11 +129,11 @@ class Camera:
             center: a point on the ground below the robot, or between two (2,), m.
             spread: from one robot to the other, if there are two (2,), m.
         """
-        view, aspect = VIEWS[name], _aspect(self._client)
-        self._looked = None if spread is None else (name, spread, aspect)
+        view, opening = VIEWS[name], self.opening
+        self._looked = None if spread is None else (name, spread, opening.aspect)
         if spread is not None:
             view = of_two(view, spread / self._size)
-        target, position = camera_pose(view, self._size, center, aspect)
+        target, position = camera_pose(view, self._size, center, opening)
         self._center = center
         self._client.camera.fov = FIELD_OF_VIEW
         self._client.camera.position = position
@@ -113,7 +150,7 @@ class Camera:
         if spread is not None:
             view = of_two(view, spread / self._size)
         turned = replace(view, azimuth=view.azimuth + degrees)
-        target, position = camera_pose(turned, self._size, center, _aspect(self._client))
+        target, position = camera_pose(turned, self._size, center, self.opening)
         self._client.camera.position = position
         self._client.camera.look_at = target
 
@@ -138,7 +175,7 @@ class Camera:
             center: a point on the ground below the robot (2,), m.
             leash: how far it may go, in CoM heights.
         """
-        if self._looked is not None and abs(self._looked[2] - _aspect(self._client)) > _OTHER_SHAPE:
+        if self._looked is not None and abs(self._looked[2] - self.opening.aspect) > _OTHER_SHAPE:
             self.look(
                 self._looked[0], center, self._looked[1]
             )  # a panel has been docked: both must fit again
@@ -153,12 +190,6 @@ class Camera:
         self._client.camera.position = position + np.append(step, 0.0)
 
 
-def _aspect(client: viser.ClientHandle) -> float:
-    """Width over height of the picture, as the browser tells it."""
-    width, height = client.camera.image_width, client.camera.image_height
-    return width / height if width > 0 and height > 0 else USUAL_ASPECT
-
-
 def of_two(view: View, spread: np.ndarray) -> View:
     """The view for two robots: from where they do not hide each other, and wide enough for both.
 
@@ -166,7 +197,7 @@ def of_two(view: View, spread: np.ndarray) -> View:
         view: of one robot.
         spread: from one robot to the other (2,), in CoM heights.
     """
-    azimuth = view.azimuth if view.azimuth in (0.0, -90.0) else _AZIMUTH_OF_TWO
+    azimuth = view.azimuth if view.azimuth in _FIXED else _AZIMUTH_OF_TWO
     across = np.array([-math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))])
     return replace(view, azimuth=azimuth, width=view.width + _ROOM_TO_FALL + abs(float(across @ spread)))
 
@@ -181,17 +212,19 @@ def wide_enough(view: View, way: np.ndarray) -> View:
     return replace(view, width=view.width + float(np.linalg.norm(way)))
 
 
-def camera_pose(view: View, size: float, center: np.ndarray, aspect: float) -> tuple[np.ndarray, np.ndarray]:
+def camera_pose(
+    view: View, size: float, center: np.ndarray, opening: Opening
+) -> tuple[np.ndarray, np.ndarray]:
     """Target and position (3,) of a camera that sees everything a view wants to show.
 
     Args:
         view: from where, and how much.
         size: height of the robot's CoM, m.
         center: a point on the ground below the robot (2,), m.
-        aspect: width over height of the picture.
+        opening: what of the picture can be seen.
     """
-    free = 1.0 - _COVERED if aspect < _NARROW else 1.0
-    height = max((view.high - view.low) / free, view.width / aspect) * size
+    free = opening.free
+    height = max((view.high - view.low) / free, view.width / opening.aspect) * size
     middle = 0.5 * (view.high + view.low) * size
     target = np.array([center[0], center[1], middle - 0.5 * (1.0 - free) * height])
     azimuth, elevation = math.radians(view.azimuth), math.radians(view.elevation)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
 import viser
 
-from momentum_lab.app import access_html, html, share_html
+from momentum_lab.app import access_html, html, look_html, share_html, typed_html
 from momentum_lab.app.appearance import Appearance, dress
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.demo_panel import DemoPanel
@@ -16,11 +17,14 @@ from momentum_lab.app.ground_panel import GroundPanel
 from momentum_lab.app.hand import Hand
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.learn_panel import LearnPanel
+from momentum_lab.app.learn_style import ON_A_PHONE
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
 from momentum_lab.app.mismatch_panel import MismatchPanel
+from momentum_lab.app.page_plan import LEFT, RIGHT, PagePlan
 from momentum_lab.app.plots import Plots
+from momentum_lab.app.pulling import Pulling
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.runs_panel import RunsPanel
@@ -28,13 +32,11 @@ from momentum_lab.app.sequence_panel import SequencePanel
 from momentum_lab.app.share_panel import SharePanel, Sharing
 from momentum_lab.app.status_bar import StatusBar
 from momentum_lab.app.tabs import Tabs
+from momentum_lab.app.time_bar import time_bar
 from momentum_lab.app.view_panel import ViewPanel, ViewSettings
 from momentum_lab.app.widgets import Post
 from momentum_lab.app.wire import Truth
 
-_RIGHT, _LEFT = 350.0, 350.0
-# Pages narrower than this, width over height, have no room for plots beside the picture or for many labels.
-_ROOMY = 1.1
 _PLOTS, _LEARN = ("Plots", viser.Icon.CHART_LINE), ("Learn", viser.Icon.SCHOOL)
 
 
@@ -43,6 +45,7 @@ class Panels:
 
     Args:
         client: the browser tab.
+        plan: what its page has room for.
         post: where events go.
         tell: shows a person what was wrong.
         look: turns the camera to a named view.
@@ -60,6 +63,7 @@ class Panels:
     def __init__(
         self,
         client: viser.ClientHandle,
+        plan: PagePlan,
         post: Post,
         tell: Callable[[str], None],
         look: Callable[[str], None],
@@ -77,18 +81,19 @@ class Panels:
         dress(gui, "light")
         gui.set_panel_label("Momentum lab")
         gui.main_panel.dock_right()
-        gui.main_panel.set_width(_RIGHT)
-        roomy = client.camera.image_width >= _ROOMY * client.camera.image_height
-        self.settings = ViewSettings(labelled=ALL_LABELS if roomy else FEW_LABELS)
+        gui.main_panel.set_width(RIGHT)
+        self.settings = ViewSettings(labelled=ALL_LABELS if plan.roomy else FEW_LABELS)
         appearance = Appearance(client, self.settings, redraw)
-        self.status = StatusBar(gui, post)
+        with time_bar(client, plan.picture) if plan.bar else contextlib.nullcontext():
+            self.status = StatusBar(gui, post)
         gui.add_html(share_html.HIDDEN_NEXT)
         address = gui.add_text("address", "")
         group = gui.add_tab_group()  # five of them fit into one line without icons
         with group.add_tab("Push"):
             self.push = PushPanel(gui, post, tell, redraw)
             SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
-            self.hand = Hand(client, self.push, self.settings, post, tell, lambda: sharing.take(False).pushes)
+            pulling = Pulling(client, self.push, self.settings, post, lambda: sharing.take(False).pushes)
+            self.hand = Hand(self.push.hand, pulling, tell)
             self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control"):
             self.control = ControlPanel(gui, post, tell, choices, truth)
@@ -103,30 +108,33 @@ class Panels:
             self.share = SharePanel(gui, sharing, address)
         demo.furnish()
         appearance.add_ear(gui)
-        gui.add_html(access_html.NAMES)
+        gui.add_html(access_html.NAMES + typed_html.TYPED + look_html.STYLE + ON_A_PHONE)
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         left = gui.add_panel()
-        # The browser opens the first tab.
+        # The browser opens the first tab; a phone has no room for plots beside the picture.
+        learn_first = lesson is not None or not plan.roomy
         tabs = [
             left.add_tab(label, icon)
-            for label, icon in ((_PLOTS, _LEARN) if lesson is None else (_LEARN, _PLOTS))
+            for label, icon in ((_LEARN, _PLOTS) if learn_first else (_PLOTS, _LEARN))
         ]
-        learn_tab, plots_tab = tabs if lesson is not None else tabs[::-1]
+        learn_tab, plots_tab = tabs if learn_first else tabs[::-1]
         with plots_tab:
             gui.add_html(_legend())
             self.plots = self._usual_plots = Plots(gui)
         self._lesson_plots: tuple[viser.GuiFormHandle, Plots] | None = None
         self._robot: LoadedRobot | None = None
         left.dock_left()
-        left.set_width(_LEFT)
-        if not roomy:
+        left.set_width(LEFT)
+        if not plan.roomy:
             # A phone shows what is folded away as one line.
             (left.minimize if lesson is None else left.expand)()
 
-        self._gui, self._group, self._roomy = gui, group, roomy
-        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, self._lesson_opened, truth)
+        self._gui, self._group, self._roomy = gui, group, plan.roomy
+        # The list of commands has them in this order: what is used most comes first.
+        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
+        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
         self.learn.start(lesson)
-        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs)
+        demo.listen()
 
     def begin_plots(self, robot: LoadedRobot) -> None:
         """Start with empty plots for a robot."""

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from momentum_lab.app.camera import LOOSE, TIGHT, VIEWS, Camera, camera_pose
+from momentum_lab.app.camera import LOOSE, TIGHT, USUAL, VIEWS, Camera, Opening, camera_pose
+from momentum_lab.lesson import parts
 from tests.app.fakes import FakeClient
 
 FIELD_OF_VIEW = math.radians(32.0)
@@ -28,7 +29,7 @@ def seen(point: np.ndarray, target: np.ndarray, position: np.ndarray, aspect: fl
 @pytest.mark.parametrize("size", [0.66, 0.88])
 def test_a_standing_robot_fits(aspect, size):
     center = np.array([100.0, -3.0])
-    target, position = camera_pose(VIEWS["Whole robot"], size, center, aspect)
+    target, position = camera_pose(VIEWS["Whole robot"], size, center, Opening(aspect))
     for height in (0.0, 1.9 * size):
         for side in (-0.3, 0.3):
             point = np.array([100.0, -3.0 + side * size, height])
@@ -36,12 +37,23 @@ def test_a_standing_robot_fits(aspect, size):
 
 
 def test_on_a_phone_the_robot_is_above_the_controls():
-    target, position = camera_pose(VIEWS["Whole robot"], 0.88, np.zeros(2), 390 / 844)
+    client = FakeClient()
+    client.camera.image_width, client.camera.image_height = 390, 844
+    target, position = camera_pose(VIEWS["Whole robot"], 0.88, np.zeros(2), Opening.of(client, 0.0))
     assert seen(np.zeros(3), target, position, 390 / 844)[1] > 0.2
 
 
+@pytest.mark.parametrize("name", VIEWS)
+def test_a_bar_covers_nothing_that_a_view_shows(name):
+    client, view = FakeClient(), VIEWS[name]
+    target, position = camera_pose(view, 0.88, np.zeros(2), Opening.of(client, 160.0))
+    # 160 of 800 pixels are covered: what is below -0.6 in a picture from -1 to 1.
+    assert seen(np.array([0.0, 0.0, view.low * 0.88]), target, position, 1.6)[1] > -0.62
+    assert seen(np.array([0.0, 0.0, 0.93 * view.high * 0.88]), target, position, 1.6)[1] < 1.0
+
+
 def test_a_push_forward_points_to_the_right_of_the_picture():
-    target, position = camera_pose(VIEWS["Whole robot"], 0.88, np.zeros(2), 1.0)
+    target, position = camera_pose(VIEWS["Whole robot"], 0.88, np.zeros(2), Opening(1.0))
     ahead = seen(np.array([0.3, 0.0, 0.9]), target, position, 1.0)
     assert ahead[0] > 0.1
 
@@ -52,6 +64,16 @@ def test_looking_sets_the_camera():
     assert client.camera.look_at[:2] == pytest.approx([1.0, 2.0])
     assert client.camera.position[1] < 2.0
     assert client.camera.position[0] == pytest.approx(1.0)
+
+
+def test_lessons_know_every_view():
+    assert tuple(VIEWS) == parts.VIEWS
+
+
+def test_from_above_forward_is_up_and_left_is_left():
+    target, position = camera_pose(VIEWS["Above"], 0.88, np.zeros(2), USUAL)
+    assert seen(np.array([0.3, 0.0, 0.9]), target, position, USUAL.aspect)[1] > 0.2
+    assert seen(np.array([0.0, 0.3, 0.9]), target, position, USUAL.aspect)[0] < -0.1
 
 
 def test_the_view_goes_along_only_when_the_robot_leaves():

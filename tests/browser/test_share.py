@@ -20,7 +20,7 @@ from momentum_lab.run_file import Run, read_run, run_of, run_of_trace
 from momentum_lab.scenario import Scenario
 from momentum_lab.share_code import from_code, link, to_code
 from tests.browser.conftest import OUTPUT, Opener, Served
-from tests.browser.lab_page import PATIENCE, LabPage
+from tests.browser.lab_page import PATIENCE, TALL, LabPage
 
 pytestmark = [
     pytest.mark.browser,
@@ -60,7 +60,7 @@ def downloaded(lab: LabPage, what: str, folder: Path) -> Path:
 
 
 def test_files_and_codes_hold_the_run(served: Served, open_page: Opener, tmp_path: Path) -> None:
-    lab = open_page(served.url).until_furnished()
+    lab = open_page(served.url, height=TALL).until_furnished()  # a list does not open out of sight
     lab.press("p")
     lab.expect_text("Last push")
     lab.expect_com_travel(1.0)  # the push is over
