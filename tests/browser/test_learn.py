@@ -135,7 +135,7 @@ def test_two_learners_do_not_disturb_each_other(served: Served, open_page: Opene
     at_step(other, 1)
     other.press("i")
     at_step(other, 2)
-    other.click("C  Only the one that bends")
+    other.click("C  The one that stays upright: it brakes less")
     expect(button(other, "Next (I)")).to_be_enabled(timeout=PATIENCE)
     other.press("i")
     at_step(other, 3)
@@ -165,13 +165,13 @@ def test_a_lesson_on_a_phone(served_lesson: Served, open_page: Opener) -> None:
     lab.save(OUTPUT / "learn_phone_test.png")
     lab.press("i")
     at_step(lab, 2)
-    box = button(lab, "B  Only the one that stays upright").bounding_box()
+    box = button(lab, "B  The one that bends: it gives up its posture").bounding_box()
     assert box is not None
     assert box["x"] >= 0
     assert box["x"] + box["width"] <= 390
     lab.save(OUTPUT / "learn_phone_choice_test.png")
 
-    lab.click("B  Only the one that stays upright")
+    lab.click("B  The one that bends: it gives up its posture")
     expect(button(lab, "Next (I)")).to_be_enabled(timeout=PATIENCE)
     lab.page.wait_for_timeout(1000)  # the browser keeps it
     lab.page.reload()
