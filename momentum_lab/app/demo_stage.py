@@ -70,10 +70,13 @@ class DemoStage:
         """Add what it needs to the page, and watch the time from now on."""
         self._client.gui.add_html(LISTENER)
         self._caption = self._client.gui.add_html("")
-        command = self._client.gui.add_command(COMMAND, hotkey=HOTKEY)
-        command.on_trigger(lambda _: self.demo.touch())
         self.demo.touch()
         threading.Thread(target=self._watch, name="demo", daemon=True).start()
+
+    def listen(self) -> None:
+        """Hear the key that the page presses; last in the list of commands, where only a demonstration is ended."""
+        command = self._client.gui.add_command(COMMAND, hotkey=HOTKEY)
+        command.on_trigger(lambda _: self.demo.touch())
 
     def close(self) -> None:
         """The tab has been closed."""

@@ -113,10 +113,18 @@ class LearnPanel:
             self._show_list()
         else:
             threading.Thread(target=self._open, args=(entry,), name="first lesson", daemon=True).start()
+        threading.Thread(target=self._look_through, args=(entries,), name="faults", daemon=True).start()
         known = self._store.load([one.key for one in entries])
         self._remembered.set()
         with self._lock:
             if known and self._entry is None and not self._closed:
+                self._show_list()
+
+    def _look_through(self, shown: list[Entry]) -> None:
+        """Mark the lessons that turn out to have an error."""
+        found = self._library.look_through()
+        with self._lock:
+            if found != shown and self._entry is None and not self._closed:
                 self._show_list()
 
     def _show_list(self) -> None:
@@ -191,10 +199,10 @@ class LearnPanel:
         assert self._robot is not None
         return self._robot, self._truth
 
-    def _answer(self, value: float) -> None:
+    def _answer(self, place: int, read: Callable[[], float]) -> None:
         with self._lock:
             if self._player is not None:
-                self._player.answer(value)
+                self._player.answer(place, read())
 
     def _next(self) -> None:
         with self._lock:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import viser
 
 from momentum_lab.app import learn_html
 from momentum_lab.app.learn_frame import LearnFrame
-from momentum_lab.app.learn_pages import PAGES, Desk, Page
+from momentum_lab.app.learn_pages import PAGES, Answer, Desk, Page
 from momentum_lab.app.lesson_wire import LessonEvent, LessonNews, OfferRun, ShowRun
 from momentum_lab.app.progress import Progress, ProgressStore
 from momentum_lab.app.robots import LoadedRobot
@@ -46,7 +47,7 @@ class LessonPlayer:
         post: Post,
         ask: Callable[[LessonEvent], None],
         look: Callable[[str], None],
-        answer: Callable[[float], None],
+        answer: Answer,
         now: Callable[[], tuple[LoadedRobot, Truth]],
     ) -> None:
         self._key, self._store, self._frame, self._ask, self._look = key, store, frame, ask, look
@@ -75,10 +76,10 @@ class LessonPlayer:
         """Push as the open step says; False if it does not."""
         return self._page is not None and self._page.push()
 
-    def answer(self, value: float) -> None:
-        """Take a prediction, unless it comes too late."""
+    def answer(self, place: int, value: float) -> None:
+        """Take a prediction of a step, unless it comes too late or is no number."""
         walk, page = self._walk, self._page
-        if page is None or walk.frozen:
+        if page is None or place != walk.place or walk.frozen or not math.isfinite(value):
             return
         walk.answers[walk.place] = value
         page.refresh()

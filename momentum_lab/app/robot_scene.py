@@ -9,15 +9,13 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from momentum_lab.app.marks import Color
+from momentum_lab.app.body_look import opacity_in, tinted
+from momentum_lab.app.marks import Theme
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.viewer import Viewer
+from momentum_lab.palette import Color
 
 _FREE_FLYER = 1
-_SEE_THROUGH = 0.3
-
-MODIFIER = "shift"
-"""What a hand that pulls holds down; without it a drag turns the picture, wherever it begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +47,9 @@ class RobotScene:
         root: name of the node that everything hangs below.
         color: of all its meshes, red, green, blue, 0 to 255; None: their own.
         least: the smallest motion that is sent.
+
+    Attributes:
+        there: whether it is still in the scene.
     """
 
     def __init__(
@@ -61,6 +62,8 @@ class RobotScene:
         least: Least = ON_SCREEN,
     ) -> None:
         self._root, self._least = root, least
+        self._color = color
+        self._theme: Theme = "light"
         self._model = robot.model.model
         self._data = self._model.createData()
         pin.forwardKinematics(self._model, self._data, q)
@@ -68,6 +71,7 @@ class RobotScene:
         self._positions: dict[int, tuple[float, ...]] = {}
         self._frames = self._add_frames(client)
         self._parts = robot.meshes
+        self.there = True
         self._meshes = [
             client.scene.add_mesh_simple(
                 f"{self._frames[mesh.joint].name}/mesh_{i}",
@@ -88,14 +92,16 @@ class RobotScene:
         """The configuration that is drawn (nq,)."""
         return self._drawn.copy()
 
-    def on_drag(self, note: Callable[[int, Any], Awaitable[None]]) -> None:
-        """Let a hand that holds Shift drag any part of the robot; without Shift it turns the picture.
+    def on_drag(self, note: Callable[[int, Any], Awaitable[None]], modifier: str | None) -> None:
+        """Let a hand drag any part of the robot, and no longer as it could before.
 
         Args:
             note: is told which joint the part moves with, and viser's event.
+            modifier: the key that it holds down; without it a drag turns the picture. None: no key.
         """
         for mesh, handle in zip(self._parts, self._meshes, strict=True):
-            _listen(handle, mesh.joint, note)
+            handle.remove_drag_callback("all")
+            _listen(handle, mesh.joint, note, modifier)
 
     def draw(self, q: np.ndarray) -> None:
         """Move to a configuration (nq,)."""
@@ -114,10 +120,18 @@ class RobotScene:
         for joint in moved:
             self._place(joint, self._frames[joint])
 
-    def see_through(self, on: bool) -> None:
-        """Whether the marks inside the body show."""
+    def see_through(self, on: bool, theme: Theme = "light") -> None:
+        """Whether the marks inside the body show, on a light or a dark page."""
         for mesh in self._meshes:
-            mesh.opacity = _SEE_THROUGH if on else None
+            mesh.opacity = opacity_in(theme) if on else None
+        self._paint(theme)
+
+    def _paint(self, theme: Theme) -> None:
+        """Have the colours of a light or a dark page; a body of one colour keeps it."""
+        if theme != self._theme and self._color is None:
+            self._theme = theme
+            for part, mesh in zip(self._parts, self._meshes, strict=True):
+                mesh.color = tinted(part.color, theme)
 
     def fade(self, opacity: float) -> None:
         """Let the body be a part of what it was, from 0 to 1."""
@@ -130,6 +144,7 @@ class RobotScene:
 
     def remove(self) -> None:
         """Take the robot out of the scene."""
+        self.there = False
         self._frames[_FREE_FLYER].remove()
 
     def _joint_of(self, angle: int) -> int:
@@ -156,8 +171,10 @@ class RobotScene:
             self._positions[joint] = frame.position = position
 
 
-def _listen(handle: Any, joint: int, note: Callable[[int, Any], Awaitable[None]]) -> None:
+def _listen(
+    handle: Any, joint: int, note: Callable[[int, Any], Awaitable[None]], modifier: str | None
+) -> None:
     async def dragged(event: Any) -> None:
         await note(joint, event)
 
-    handle.on_drag("left", modifier=MODIFIER)(dragged)
+    handle.on_drag("left", modifier=modifier)(dragged)

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from momentum_lab.app import access_html
+from momentum_lab.app import access_html, look_html
 from momentum_lab.app.bare_client import BareClient, Received
-from momentum_lab.app.demo_stage import LISTENER
+from momentum_lab.app.demo_stage import COMMAND, LISTENER
 from momentum_lab.app.help_page import keys_in_help
 from momentum_lab.app.profile import TEST
 from momentum_lab.app.server import LabServer
@@ -32,10 +32,10 @@ UNITS = (
     "kg",
     "N m",
     "N s",
-    "1∕s",
-    "1∕s²",
-    "N m∕rad",
-    "N m s∕rad",
+    "1/s",
+    "1/s²",
+    "N m/rad",
+    "N m s/rad",
 )
 NO_UNIT = "(no unit)"
 NUMBERS = ("GuiSliderMessage", "GuiNumberMessage", "GuiVector2Message", "GuiVector3Message")
@@ -70,7 +70,7 @@ def lab() -> Iterator[LabServer]:
 def client(lab: LabServer) -> Iterator[BareClient]:
     with BareClient(lab.url) as client:
         client.received = Kept()
-        client.read_until(lambda received: "Help" in received.labels, PATIENCE)
+        client.read_until(lambda received: COMMAND in received.labels, PATIENCE)
         yield client
 
 
@@ -92,15 +92,17 @@ def test_every_number_has_a_unit_or_says_that_it_has_none(client):
 
 
 def test_help_explains_every_key_of_the_palette(client):
-    hotkeys = [props["hotkey"] for props in kept(client).props("RegisterCommandMessage") if props["hotkey"]]
-    assert len(set(hotkeys)) == len(hotkeys)
-    assert set(hotkeys) == keys_in_help()
-    assert not set(hotkeys) & {"Space", " ", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"}
+    commands = [props for props in kept(client).props("RegisterCommandMessage") if props["hotkey"]]
+    pressed = [(props["hotkey"], props["modifier"]) for props in commands]
+    assert len(set(pressed)) == len(pressed)
+    hotkeys = {props["hotkey"] for props in commands}
+    assert hotkeys == keys_in_help()
+    assert not hotkeys & {"Space", " ", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"}
 
 
 def test_a_page_names_its_widgets_and_listens_for_a_person(client):
     pieces = [props["content"] for props in kept(client).props("GuiHtmlMessage")]
-    assert pieces.count(access_html.NAMES) == pieces.count(LISTENER) == 1
+    assert [pieces.count(piece) for piece in (access_html.NAMES, look_html.STYLE, LISTENER)] == [1, 1, 1]
 
 
 def test_dark_page_has_a_dark_floor_and_light_comes_back(client):
@@ -125,7 +127,7 @@ def test_nobody_is_there_so_it_plays_until_somebody_is(client, lab):
     client.read_until(lambda _: kept(client).captions(), WAIT + PATIENCE)
     client.read_until(lambda _: visitor.latest.demo, PATIENCE)
     assert visitor.latest.truth.run != own.run
-    client.send({"type": "CommandTriggerMessage", "uuid": command(client, "End the demonstration")})
+    client.send({"type": "CommandTriggerMessage", "uuid": command(client, COMMAND)})
     client.read_until(lambda _: not visitor.latest.demo, PATIENCE)
     assert visitor.latest.truth.run == own.run
 

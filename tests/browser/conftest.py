@@ -40,11 +40,9 @@ from momentum_lab.app.profile import PROFILES
 from momentum_lab.app.server import serve
 from momentum_lab.scenario import load_scenario
 if __name__ == "__main__":
-    profile, scenario, *lesson = sys.argv[1:]
-    first = Path(lesson[0]) if lesson else None
-    library = Library(first.parent) if first else None
-    start = load_scenario(scenario)
-    serve(start, port=0, open_browser=False, profile=PROFILES[profile], library=library, lesson=first)
+    profile, scenario, *lessons = sys.argv[1:]
+    library = Library(Path(lessons[0])) if lessons else None
+    serve(load_scenario(scenario), port=0, open_browser=False, profile=PROFILES[profile], library=library)
 """
 
 
@@ -56,11 +54,11 @@ class Served:
     url: str
 
 
-def serve(folder: Path, profile: str, scenario: str = "stand", *lesson: Path) -> Iterator[Served]:
+def serve(folder: Path, profile: str, scenario: str = "stand", *lessons: Path) -> Iterator[Served]:
     script = folder / "lab.py"
     script.write_text(SERVE)
     process = subprocess.Popen(
-        [sys.executable, script, profile, scenario, *lesson], stdout=subprocess.PIPE, text=True
+        [sys.executable, script, profile, scenario, *lessons], stdout=subprocess.PIPE, text=True
     )
     try:
         yield Served(process, process.stdout.readline().split()[2])
@@ -108,8 +106,8 @@ def open_page(browser: Browser) -> Iterator[Opener]:
         if message.type == "error" and not message.text.startswith((CROSSED, PASSIVE)):
             errors.append(message.text)
 
-    def open_page(url: str, width: int = 1280, height: int = 800) -> LabPage:
-        page = browser.new_page(viewport={"width": width, "height": height})
+    def open_page(url: str, width: int = 1280, height: int = 800, fingers: bool = False) -> LabPage:
+        page = browser.new_page(viewport={"width": width, "height": height}, has_touch=fingers)
         opened.append(page)
         page.on("console", note)
         page.on("pageerror", lambda error: errors.append(str(error)))

@@ -1,4 +1,4 @@
-"""A person pushes the robot by hand: grab it in the picture, pull, look at the arrow, let go; and it is repeated."""
+"""A person pushes the robot by hand or with a finger: grab it in the picture, pull, let go; and it is repeated."""
 
 from __future__ import annotations
 
@@ -36,6 +36,32 @@ def pull(lab: LabPage, end: tuple[int, int]) -> None:
         lab.page.wait_for_timeout(200)
 
 
+class Finger:
+    """A finger on the trunk."""
+
+    def __init__(self, lab: LabPage) -> None:
+        self._page, self._at = lab.page, TRUNK
+        self._wire = lab.page.context.new_cdp_session(lab.page)
+
+    def pull(self, end: tuple[int, int]) -> None:
+        """Go somewhere in steps and stay there; the first time from the trunk."""
+        start = np.array(self._at)
+        if self._at == TRUNK:
+            self._send("touchStart", TRUNK)
+        for part in np.linspace(0.2, 1.0, 5):
+            self._send("touchMove", tuple((start + part * (np.array(end) - start)).tolist()))
+        self._at = end
+
+    def lift(self) -> None:
+        self._send("touchEnd")
+        self._at = TRUNK
+
+    def _send(self, kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": x, "y": y} for x, y in places]
+        self._wire.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        self._page.wait_for_timeout(200)
+
+
 def slider(lab: LabPage, label: str) -> Locator:
     uuid = lab.page.locator(f"label:text-is('{label}')").first.get_attribute("for", timeout=PATIENCE)
     return lab.page.locator(f"[id='{uuid}'] [role=slider]").first
@@ -49,7 +75,7 @@ def changed(before: np.ndarray, after: np.ndarray, clip: dict[str, int]) -> floa
 
 
 def test_a_hand_in_the_picture(served: Served, open_page: Opener, tmp_path: Path) -> None:
-    lab = open_page(served.url).until_furnished()
+    lab = open_page(served.url, fingers=True).until_furnished()
     lab.expect_status("standing")
     lab.expect_ticks(plot=0)
     still = lab.picture(CANVAS)
@@ -73,19 +99,30 @@ def test_a_hand_in_the_picture(served: Served, open_page: Opener, tmp_path: Path
 
     lab.page.get_by_role("combobox", name="by hand").evaluate("b => b.click()")
     lab.page.get_by_role("option", name="hold").evaluate("o => o.click()")
-    lab.page.wait_for_timeout(1000)
-    lab.page.keyboard.down("Shift")
-    pull(lab, HELD)
+    switch = lab.page.get_by_role("checkbox", name="drag pushes the robot")
+    lab.press("t")
+    expect(switch).to_be_checked(timeout=PATIENCE)
+    lab.page.wait_for_timeout(1000)  # the meshes hear of it after the switch
+    finger = Finger(lab)
+    finger.pull(HELD)
     lab.page.wait_for_timeout(1000)
     lab.page.screenshot(path=OUTPUT / "drag_hold.png", timeout=PATIENCE)
-    lab.page.mouse.up()
-    lab.page.keyboard.up("Shift")
+    finger.lift()
     expect(slider(lab, "duration (ms)")).not_to_have_attribute("aria-valuenow", "100", timeout=PATIENCE)
     lab.press("k")
     lab.expect_text("paused")
 
+    lab.page.get_by_role("combobox", name="by hand").evaluate("b => b.click()")
+    lab.page.get_by_role("option", name="pulse").evaluate("o => o.click()")
+    finger.pull(PULLED)  # and back: given up
+    finger.pull((TRUNK[0] + 3, TRUNK[1]))
+    finger.lift()
+    lab.press("t")
+    expect(switch).not_to_be_checked(timeout=PATIENCE)
+    still = lab.picture(CANVAS)
     pull(lab, PULLED)  # without Shift: the picture turns, and nobody is pushed
     lab.page.mouse.up()
+    assert changed(still, lab.picture(CANVAS), CANVAS) > 0.1
     lab.open_tab("5", "Share")
     run = from_code(code_of(lab))
     session, _ = replayed(run)
