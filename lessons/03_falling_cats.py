@@ -75,7 +75,7 @@ STEPS = (
     lab.Number(
         "Another one is kicked in the air. How much of its spin is lost before it lands?", "lost", 0, 100
     ),
-    lab.Play("From above, forward is up. Slow it down.", "cat", ("push",), beside="kicked", view="Above"),
+    lab.Play("You look from the front. Slow it down.", "cat", ("push",), beside="kicked", view="Front"),
     lab.Compare(
         "The legs are back to within {bent}. The body has turned by {cat} about the vertical. The "
         "legs had up to {limbs}, the body as much the other way, and the sum was never more than {none}. Of "
