@@ -101,7 +101,7 @@ def test_help_explains_every_key_of_the_palette(client):
 
 
 def test_a_page_names_its_widgets_and_listens_for_a_person(client):
-    pieces = [props["content"] for props in kept(client).props("GuiHtmlMessage")]
+    pieces = "".join(props["content"] for props in kept(client).props("GuiHtmlMessage"))
     assert [pieces.count(piece) for piece in (access_html.NAMES, look_html.STYLE, LISTENER)] == [1, 1, 1]
 
 
