@@ -76,7 +76,8 @@ def time_line(
     clock = f"{blanks(time, 2, 3)}<b>{time:.2f} s</b>"
     # The longer line has to fit where the shorter one does: what is around it keeps its place.
     small = " small" if behind else ""
-    return f'<div class="lab{small} n dim">simulated time {clock} · {pace}{asked}{_failures(failures)}</div>'
+    told = f"simulated time {clock} · {pace}{asked}{_failures(failures)}"
+    return f'<div class="lab{small} n dim" data-time="{time:.3f}">{told}</div>'
 
 
 def _failures(count: int) -> str:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, sync_playwright
 
-from tests.browser.lab_page import LabPage
+from tests.browser.lab_page import LOW, LabPage
 
 OUTPUT = Path(__file__).parent / "output"
 # Chromium without a graphics card draws WebGL in software; plots that it "accelerates" take all of its time.
@@ -72,14 +72,14 @@ def serve(folder: Path, profile: str, scenario: str = "stand", *lessons: Path) -
 
 @pytest.fixture(scope="session")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """The lab as tests can bear it: no shadows, no environment map."""
-    yield from serve(tmp_path_factory.mktemp("test"), "test")
+    """The lab as tests can bear it: no shadows, no environment map, a robot of few triangles."""
+    yield from serve(tmp_path_factory.mktemp("test"), "coarse")
 
 
 @pytest.fixture
-def served_for_people(tmp_path: Path) -> Iterator[Served]:
-    """The lab as people see it."""
-    yield from serve(tmp_path, "normal")
+def served_in_detail(tmp_path: Path) -> Iterator[Served]:
+    """The lab without shadows, but with all of its robot."""
+    yield from serve(tmp_path, "test")
 
 
 @pytest.fixture(scope="session")
@@ -106,7 +106,7 @@ def open_page(browser: Browser) -> Iterator[Opener]:
         if message.type == "error" and not message.text.startswith((CROSSED, PASSIVE)):
             errors.append(message.text)
 
-    def open_page(url: str, width: int = 1280, height: int = 800, fingers: bool = False) -> LabPage:
+    def open_page(url: str, width: int = 1280, height: int = LOW, fingers: bool = False) -> LabPage:
         page = browser.new_page(viewport={"width": width, "height": height}, has_touch=fingers)
         opened.append(page)
         page.on("console", note)

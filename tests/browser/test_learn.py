@@ -56,7 +56,7 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Course]:
     )
     written(folder, *EVERYTHING)
     first, second = (rehearsed(str(path), "talos") for path in sorted(folder.glob("0[12]*.py")))
-    for served in serve(tmp_path_factory.mktemp("test"), "test", "stand", folder):
+    for served in serve(tmp_path_factory.mktemp("test"), "coarse", "stand", folder):
         yield Course(served, first, second)
 
 
@@ -159,7 +159,7 @@ def test_leaving_gives_the_own_session_back(course: Course, open_page: Opener) -
     lab.expect_text("Last push")
     lab.press("k")
     lab.expect_text("paused")
-    own = lab.settled_text("simulated time")
+    own = lab.time
     learner = Learner(lab, course.second)
     learner.open_list()
     learner.open()
@@ -167,7 +167,7 @@ def test_leaving_gives_the_own_session_back(course: Course, open_page: Opener) -
     lab.expect_text(r"simulated time\s*0\.00 s")
     learner.leave()
     lab.expect_text("Last push")
-    assert lab.settled_text("simulated time") == own
+    lab.expect_time(own)
     expect(learner.button("Push (P)")).to_be_visible(timeout=PATIENCE)
 
 
