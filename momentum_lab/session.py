@@ -161,6 +161,11 @@ class Session:
         return pushed.until(self.time, self.scenario.timestep)
 
     @property
+    def holds(self) -> bool:
+        """Whether a push is held."""
+        return self._pushed.held is not None
+
+    @property
     def motion_reach(self) -> np.ndarray:
         """How far the present motion moves each joint (na,), rad; zeros without one."""
         return np.zeros(self.robot.na) if self._motion is None else self._motion.reach.sum(axis=0)

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import viser
 
-from momentum_lab.app.marks import SKY
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.story import Story
 from momentum_lab.app.wire import Truth
+from momentum_lab.palette import SKY
 
 _OPACITY = 0.4
 

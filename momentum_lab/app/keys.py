@@ -36,24 +36,24 @@ def add_keys(
     """Give a browser tab its keys; all of them are in the command palette too."""
     keys: tuple[tuple[str, Any, Callable[[], None]], ...] = (
         ("Push", "P", push_now),
-        ("Repeat the last push", None, push.apply_again),
+        ("Stand up again", "R", lambda: post(Reset())),
         ("Play or pause", "K", status.toggle),
         ("What would this push do?", "F", push.ask),
-        ("Keep this run as A", "M", runs.keep),
-        ("Same pushes again", "N", runs.run_again),
-        ("Show or hide A", "G", runs.toggle_ghost),
+        ("Repeat the last push", None, push.apply_again),
+        ("Help", "H", lambda: _show_help(client)),
         ("Step 1 ms", "J", lambda: post(StepOnce(SMALL_STEP))),
         ("Step 20 ms", "L", lambda: post(StepOnce(LARGE_STEP))),
         ("Go on from the instant that is looked at", "B", lambda: post(Branch())),
-        ("Stand up again", "R", lambda: post(Reset())),
         ("Drag pushes the robot, without Shift", "T", hand.toggle),
         ("Let go without a push", "Z", hand.give_up),
+        ("Keep this run as A", "M", runs.keep),
+        ("Same pushes again", "N", runs.run_again),
+        ("Show or hide A", "G", runs.toggle_ghost),
         ("Push tab", "1", lambda: tabs.open(0)),
         ("Control tab", "2", lambda: tabs.open(1)),
         ("View tab", "3", lambda: tabs.open(2)),
         ("Runs tab", "4", lambda: tabs.open(3)),
         ("Share tab", "5", lambda: tabs.open(4)),
-        ("Help", "H", lambda: _show_help(client)),
     )
     for label, hotkey, act in keys:
         client.gui.add_command(label, hotkey=hotkey).on_trigger(_triggered(act))

@@ -9,7 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal
 
-Color = tuple[int, int, int]
+from momentum_lab import palette
+from momentum_lab.palette import BLACK, CAPTURE, CMP, COM, COP, COP_WANTED, GREY, GRF, WHITE, YELLOW, Color
+
 Theme = Literal["light", "dark"]
 Shape = Literal[
     "ball",
@@ -28,17 +30,6 @@ Shape = Literal[
     "dashes",
 ]
 Anchor = Literal["top-left", "top-right", "bottom-left", "bottom-right", "top-center"]
-
-BLACK: Color = (0, 0, 0)
-WHITE: Color = (255, 255, 255)
-ORANGE: Color = (230, 159, 0)
-SKY: Color = (86, 180, 233)
-GREEN: Color = (0, 158, 115)
-YELLOW: Color = (240, 228, 66)
-BLUE: Color = (0, 114, 178)
-VERMILLION: Color = (213, 94, 0)
-PURPLE: Color = (204, 121, 167)
-GREY: Color = (110, 110, 110)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +61,7 @@ class MarkStyle:
     @property
     def css(self) -> str:
         """The colour as #rrggbb."""
-        return "#" + "".join(f"{channel:02x}" for channel in self.color)
+        return palette.css(self.color)
 
 
 def in_theme(style: MarkStyle, theme: Theme) -> MarkStyle:
@@ -84,17 +75,17 @@ def _intensity(value: float) -> float:
 
 
 _STYLES = (
-    MarkStyle("com", "CoM", "ball", ORANGE, "Centre of mass.", "bottom-left"),
+    MarkStyle("com", "CoM", "ball", COM, "Centre of mass.", "bottom-left"),
     MarkStyle(
-        "com_ground", "CoM on ground", "ring", ORANGE, "The point straight below the CoM.", "bottom-right"
+        "com_ground", "CoM on ground", "ring", COM, "The point straight below the CoM.", "bottom-right"
     ),
-    MarkStyle("cop", "CoP", "diamond", BLUE, "Centre of pressure: where the ground pushes.", "top-right"),
-    MarkStyle("foot_cop", "CoP of a foot", "disc", BLUE, "Where the ground pushes on one foot.", "top-right"),
+    MarkStyle("cop", "CoP", "diamond", COP, "Centre of pressure: where the ground pushes.", "top-right"),
+    MarkStyle("foot_cop", "CoP of a foot", "disc", COP, "Where the ground pushes on one foot.", "top-right"),
     MarkStyle(
         "cop_desired",
         "desired CoP",
         "hollow square",
-        SKY,
+        COP_WANTED,
         "The CoP that both momentum goals together would need.",
         "bottom-left",
     ),
@@ -102,7 +93,7 @@ _STYLES = (
         "cop_granted",
         "granted CoP",
         "square",
-        SKY,
+        COP_WANTED,
         "The nearest CoP that the safe support area allows.",
         "bottom-right",
     ),
@@ -110,7 +101,7 @@ _STYLES = (
         "cmp",
         "CMP",
         "triangle",
-        VERMILLION,
+        CMP,
         "Where the line through the CoM, parallel to the ground reaction force, meets the ground.",
         "top-left",
     ),
@@ -118,21 +109,21 @@ _STYLES = (
         "capture",
         "capture point",
         "cross",
-        PURPLE,
+        CAPTURE,
         "Where the CMP has to be for the CoM to come to rest above it.",
         "bottom-left",
     ),
-    MarkStyle("grf", "GRF", "arrow", GREEN, "Net ground reaction force, drawn from the CoP.", "bottom-right"),
+    MarkStyle("grf", "GRF", "arrow", GRF, "Net ground reaction force, drawn from the CoP.", "bottom-right"),
     MarkStyle(
-        "foot_grf", "GRF of a foot", "thin arrow", GREEN, "Ground reaction force on one foot.", "bottom-right"
+        "foot_grf", "GRF of a foot", "thin arrow", GRF, "Ground reaction force on one foot.", "bottom-right"
     ),
     MarkStyle("push", "push", "arrow", BLACK, "The push, where it acts.", "bottom-right"),
-    MarkStyle("com_cmp", "CoM to CMP", "line", VERMILLION, "Parallel to the ground reaction force."),
+    MarkStyle("com_cmp", "CoM to CMP", "line", CMP, "Parallel to the ground reaction force."),
     MarkStyle(
         "gap",
         "rate of angular momentum",
         "bar",
-        VERMILLION,
+        CMP,
         "From the CoP to the CMP: the lever with which the ground reaction force turns the body.",
         "top-left",
     ),

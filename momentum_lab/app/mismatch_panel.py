@@ -7,7 +7,7 @@ from typing import Any
 
 import viser
 
-from momentum_lab.app import html
+from momentum_lab.app import html, look_html
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
 from momentum_lab.events import SetMismatch
@@ -26,7 +26,8 @@ class MismatchPanel:
     def __init__(self, gui: viser.GuiApi, post: Post, truth: Truth) -> None:
         self._post, self._mismatch = post, truth.mismatch
         with gui.add_folder("Model errors", expand_by_default=False):
-            gui.add_html(html.sentence("What the robot is and measures, and its controller is not told:"))
+            words = "What the robot is and measures, and its controller is not told:"
+            gui.add_html(look_html.WIDE + html.sentence(words))
             self._sliders = {
                 error.name: Bound[float](
                     _slider(gui, error, getattr(truth.mismatch, error.name)), _setter(error.name), post
@@ -69,8 +70,7 @@ def _slider(gui: viser.GuiApi, error: ModelError, value: float) -> Any:
         error.high,
         error.step,
         value,
-        hint=f"{error.help} From {error.low:g} to {error.high:g} {unit or '(no unit)'}"
-        + f"; default {error.default:g}.",
+        hint=f"{error.help} Default {error.default:g} {unit or '(no unit)'}.",
     )
 
 

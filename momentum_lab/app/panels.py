@@ -8,7 +8,7 @@ from pathlib import Path
 
 import viser
 
-from momentum_lab.app import access_html, html, share_html
+from momentum_lab.app import access_html, html, look_html, share_html, typed_html
 from momentum_lab.app.appearance import Appearance, dress
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.demo_panel import DemoPanel
@@ -17,6 +17,7 @@ from momentum_lab.app.ground_panel import GroundPanel
 from momentum_lab.app.hand import Hand
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.learn_panel import LearnPanel
+from momentum_lab.app.learn_style import ON_A_PHONE
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
@@ -85,6 +86,8 @@ class Panels:
         appearance = Appearance(client, self.settings, redraw)
         with time_bar(client, plan.picture) if plan.bar else contextlib.nullcontext():
             self.status = StatusBar(gui, post)
+            if plan.bar:
+                demo.add_caption()
         gui.add_html(share_html.HIDDEN_NEXT)
         address = gui.add_text("address", "")
         group = gui.add_tab_group()  # five of them fit into one line without icons
@@ -107,18 +110,20 @@ class Panels:
             self.share = SharePanel(gui, sharing, address)
         demo.furnish()
         appearance.add_ear(gui)
-        gui.add_html(access_html.NAMES)
+        gui.add_html(access_html.NAMES + typed_html.TYPED + look_html.STYLE + ON_A_PHONE)
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         left = gui.add_panel()
-        # The browser opens the first tab.
+        # The browser opens the first tab; a phone has no room for plots beside the picture.
+        learn_first = lesson is not None or not plan.roomy
         tabs = [
             left.add_tab(label, icon)
-            for label, icon in ((_PLOTS, _LEARN) if lesson is None else (_LEARN, _PLOTS))
+            for label, icon in ((_LEARN, _PLOTS) if learn_first else (_PLOTS, _LEARN))
         ]
-        learn_tab, plots_tab = tabs if lesson is not None else tabs[::-1]
+        learn_tab, plots_tab = tabs if learn_first else tabs[::-1]
         with plots_tab:
             gui.add_html(_legend())
             self.plots = self._usual_plots = Plots(gui)
+            demo.add_caption()
         self._lesson_plots: tuple[viser.GuiFormHandle, Plots] | None = None
         self._robot: LoadedRobot | None = None
         left.dock_left()
@@ -128,9 +133,11 @@ class Panels:
             (left.minimize if lesson is None else left.expand)()
 
         self._gui, self._group, self._roomy = gui, group, plan.roomy
-        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, self._lesson_opened, truth)
-        self.learn.start(lesson)
+        # The list of commands has them in this order: what is used most comes first.
         add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
+        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
+        self.learn.start(lesson)
+        demo.listen()
 
     def begin_plots(self, robot: LoadedRobot) -> None:
         """Start with empty plots for a robot."""

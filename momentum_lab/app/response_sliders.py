@@ -34,7 +34,7 @@ class ResponseSliders:
                 *_RATIOS,
                 0.01,
                 ratio,
-                hint="ζ = d ∕ (2√k) (no unit). Below 1 the CoM overshoots, above 1 it creeps back. "
+                hint="ζ = d/(2√k) (no unit). Below 1 the CoM overshoots, above 1 it creeps back. "
                 f"Sets the {damping} d.",
             ),
             lambda value: self._event(value, self._response()[1]),
@@ -42,7 +42,7 @@ class ResponseSliders:
         )
         self._frequency: Bound[float] = Bound(
             gui.add_slider(
-                "frequency ω (1∕s)",
+                "frequency ω (1/s)",
                 *_FREQUENCIES,
                 0.05,
                 frequency,

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from momentum_lab.app.marks import Color
+from momentum_lab.app.body_look import opacity_in, tinted
+from momentum_lab.app.marks import Theme
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.viewer import Viewer
+from momentum_lab.palette import Color
 
 _FREE_FLYER = 1
-_SEE_THROUGH = 0.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +62,8 @@ class RobotScene:
         least: Least = ON_SCREEN,
     ) -> None:
         self._root, self._least = root, least
+        self._color = color
+        self._theme: Theme = "light"
         self._model = robot.model.model
         self._data = self._model.createData()
         pin.forwardKinematics(self._model, self._data, q)
@@ -117,10 +120,18 @@ class RobotScene:
         for joint in moved:
             self._place(joint, self._frames[joint])
 
-    def see_through(self, on: bool) -> None:
-        """Whether the marks inside the body show."""
+    def see_through(self, on: bool, theme: Theme = "light") -> None:
+        """Whether the marks inside the body show, on a light or a dark page."""
         for mesh in self._meshes:
-            mesh.opacity = _SEE_THROUGH if on else None
+            mesh.opacity = opacity_in(theme) if on else None
+        self._paint(theme)
+
+    def _paint(self, theme: Theme) -> None:
+        """Have the colours of a light or a dark page; a body of one colour keeps it."""
+        if theme != self._theme and self._color is None:
+            self._theme = theme
+            for part, mesh in zip(self._parts, self._meshes, strict=True):
+                mesh.color = tinted(part.color, theme)
 
     def fade(self, opacity: float) -> None:
         """Let the body be a part of what it was, from 0 to 1."""

@@ -14,6 +14,7 @@ import viser
 
 from momentum_lab.app import html, share_html
 from momentum_lab.app.exporter import made_elsewhere
+from momentum_lab.app.kept_before import KeptBefore
 from momentum_lab.app.wire import Opened, RunTaken, Truth
 from momentum_lab.errors import LabError
 from momentum_lab.run_file import Run, decoded, encoded
@@ -53,6 +54,9 @@ class Sharing:
         film: a run as an .mp4 file so many pixels high; it tells the fraction that is done, and ends when that
             raises an error.
         url: where the lab is served.
+        take_back: puts the run before the opened one on stage again.
+        say: tells a person what has happened.
+        warn: tells a person what is wrong, until it is closed: a page that loads may take longer than a notice.
     """
 
     take: Callable[[bool], RunTaken]
@@ -62,6 +66,9 @@ class Sharing:
     view: Callable[[], bytes]
     film: Callable[[RunTaken, int, Callable[[float], None]], bytes]
     url: str
+    take_back: Callable[[], None]
+    say: Callable[[str], None]
+    warn: Callable[[str], None]
 
 
 class SharePanel:
@@ -80,7 +87,7 @@ class SharePanel:
         gui.add_html(html.sentence(_INTRODUCTION))
         make = gui.add_button("Make a code", icon=viser.Icon.QRCODE, hint="Of the run as it is now.")
         self._code = gui.add_html("")
-        self._pasted = gui.add_text("code", "", hint="A code, or an address that ends in one.")
+        self._pasted: Any = gui.add_text("code", "", hint="A code, or an address that ends in one.")
         open_code = gui.add_button("Open the code", color="gray", icon=viser.Icon.FOLDER_OPEN)
         upload = gui.add_upload_button(
             "Open a run file",
@@ -90,6 +97,7 @@ class SharePanel:
             hint="A run file (.json, .toml) or a trace (.npz).",
         )
         self._opened = gui.add_html("")
+        self._kept = KeptBefore(gui, sharing.take_back, sharing.say, self._forget_codes)
         self._what = gui.add_dropdown(
             "file",
             tuple(_FILES),
@@ -107,13 +115,14 @@ class SharePanel:
         self._download.on_click(lambda _: self._attempt(self._save))
         address.on_update(lambda event: self._arrived(event))
 
-    def follow(self, truth: Truth) -> None:
-        """Show how far a run is that has been opened."""
+    def follow(self, truth: Truth, left: tuple[str, ...] = ()) -> None:
+        """Show how far a run is that has been opened, and what can be taken back."""
+        self._kept.follow(truth, left)
         text = "" if truth.opened is None else html.sentence(opened_words(truth.opened))
         if text != self._told:
             self._told = self._opened.content = text
 
-    def _attempt(self, act: Callable[[], None]) -> None:
+    def _attempt(self, act: Callable[[], None], tell: Callable[[str], None] | None = None) -> None:
         """Do something once at a time; what is wrong with it is told, and the session goes on."""
         if not self._busy.acquire(blocking=False):
             self._sharing.tell("One thing at a time: the last file is still being made.")
@@ -121,7 +130,7 @@ class SharePanel:
         try:
             act()
         except LabError as error:
-            self._sharing.tell(str(error))
+            (tell or self._sharing.tell)(str(error))
         finally:
             self._busy.release()
 
@@ -130,14 +139,26 @@ class SharePanel:
         self._code.content = share_html.code(code, link(self._sharing.url, code))
 
     def _open_code(self, text: str) -> None:
-        self._sharing.open(from_code(text))
+        self._open(from_code(text))
 
     def _open_file(self, file: Any) -> None:
-        self._sharing.open(decoded(file.name, file.content))
+        self._open(decoded(file.name, file.content))
+
+    def _open(self, run: Run) -> None:
+        self._sharing.open(run)
+        self._forget_codes()
+
+    def _forget_codes(self) -> None:
+        """Another run is on stage: codes of the one before would be taken for its own."""
+        self._code.content = ""
+        self._pasted.value = ""
 
     def _arrived(self, event: Any) -> None:
         if event.client is not None and event.target.value:
-            self._attempt(lambda: self._open_code(event.target.value))
+            self._attempt(lambda: self._open_code(event.target.value), self._of_the_address)
+
+    def _of_the_address(self, problem: str) -> None:
+        self._sharing.warn(f"The address of this page opens no run. {problem}")
 
     def _save(self) -> None:
         kind, end = _FILES[self._what.value]

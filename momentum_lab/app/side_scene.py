@@ -77,9 +77,9 @@ class SideScene:
         for plate, text, com in zip(self._names, words, places, strict=True):
             plate.draw(text, com)
 
-    def see_through(self, on: bool) -> None:
-        """Whether the marks inside the body show."""
-        self.body.see_through(on)
+    def see_through(self, settings: ViewSettings) -> None:
+        """Whether the marks inside the body show, as a person has chosen."""
+        self.body.see_through(settings.see_through, settings.theme)
 
     def remove(self) -> None:
         """Leave the scene, with both names."""

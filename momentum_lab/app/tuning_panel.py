@@ -7,7 +7,8 @@ from typing import Any
 
 import viser
 
-from momentum_lab.app import html
+from momentum_lab.app import html, look_html
+from momentum_lab.app.gain_notes import GainNotes
 from momentum_lab.app.response_sliders import ResponseSliders
 from momentum_lab.app.widgets import Bound, Post, nice_step
 from momentum_lab.app.wire import Truth
@@ -16,9 +17,6 @@ from momentum_lab.control.presets import STANDARD, presets, save_preset
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import InputError
 from momentum_lab.events import SetGain, SetGains
-
-# Viser breaks labels after a slash; this one it does not know.
-_TYPOGRAPHY = str.maketrans("/", "∕")
 
 
 class TuningPanel:
@@ -43,13 +41,9 @@ class TuningPanel:
         )
         self._folder = gui.add_folder("Gains", expand_by_default=False)
         with self._folder:
+            gui.add_html(look_html.WIDE)
             self._response = ResponseSliders(gui, post, truth.gains)
-            self._sliders = {
-                gain.name: Bound[float](
-                    gain_slider(gui, gain, truth.gains[gain.name]), _setter(gain.name), post
-                )
-                for gain in self._declared.values()
-            }
+            self._sliders = self._add_sliders(gui, truth)
         self._changed = gui.add_html("")
         self._resets = {name: self._reset_button(gui, name) for name in self._declared}
         self._reset = gui.add_button("Reset the gains", color="gray", icon=viser.Icon.RESTORE)
@@ -62,6 +56,13 @@ class TuningPanel:
         self._reset.on_click(lambda _: self._set(self._presets[self._base]))
         keep.on_click(lambda _: self._keep())
         self._tell_changes()
+
+    def _add_sliders(self, gui: viser.GuiApi, truth: Truth) -> dict[str, Bound[float]]:
+        notes, sliders = GainNotes(gui), {}
+        for name, gain in self._declared.items():
+            sliders[name] = Bound[float](gain_slider(gui, gain, truth.gains[name]), _setter(name), self._post)
+            notes.add(note(gain))
+        return sliders
 
     def follow(self, truth: Truth) -> None:
         """Show what is the case."""
@@ -182,7 +183,7 @@ def words(gain: GainInfo) -> str:
 
 def unit(gain: GainInfo) -> str:
     """Its unit as it is written on the screen; empty for a ratio."""
-    return "" if gain.unit == "1" else gain.unit.translate(_TYPOGRAPHY).replace("^2", "²").replace("^3", "³")
+    return "" if gain.unit == "1" else gain.unit.replace("^2", "²").replace("^3", "³")
 
 
 def _heading(base: str, changed: bool) -> str:
@@ -199,8 +200,13 @@ def gain_slider(gui: viser.GuiApi, gain: GainInfo, value: float) -> Any:
         gain.high,
         nice_step(gain.low, gain.high, gain.default),
         value,
-        hint=f"{gain.help} From {gain.low:g} to {gain.high:g} {unit(gain) or '(no unit)'}; default {gain.default:g}.",
+        hint=note(gain),
     )
+
+
+def note(gain: GainInfo) -> str:
+    """What a gain does and its default; its range stands at the ends of its slider."""
+    return f"{gain.help} Default {gain.default:g} {unit(gain) or '(no unit)'}."
 
 
 def _setter(name: str) -> Callable[[float], SetGain]:

@@ -24,6 +24,7 @@ from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
 from momentum_lab.app.marks import FEW_LABELS, Theme
+from momentum_lab.app.notices import Notices
 from momentum_lab.app.overlays import Picture, overlays
 from momentum_lab.app.page_plan import PagePlan
 from momentum_lab.app.panels import Panels
@@ -103,8 +104,9 @@ class Visitor:
         self._plan = PagePlan.of(client)
         self._link = Link(first, choices.robots, choices.scenarios)
         self._stage: Stage | None = None
+        self._view = START_VIEW
         self._panels: Panels | None = None
-        self._comparison = Comparison(client)
+        self._comparison, self._notices = Comparison(client), Notices(client)
         self._demo = DemoStage(client, self._link.ask, self._robot, demo)
         self._run = -1
         self._floor: tuple[float, Theme] = (0.0, "light")
@@ -140,7 +142,7 @@ class Visitor:
 
     def tell(self, words: str) -> None:
         """Show a notice."""
-        self._client.add_notification("Not possible", words, auto_close_seconds=8.0, color="orange")
+        self._notices.tell(words)
 
     def close(self) -> None:
         """End the session and the drawing: the tab has been closed."""
@@ -190,7 +192,7 @@ class Visitor:
             panels.plots.clear()
         changed = not self._filming.is_set() and self._draw_picture(stage, panels, frame, sample)
         if changed:
-            self._look(START_VIEW)
+            self._look(self._view)
             self._reach_other(panels, stage)
         self._demo.after(stage.camera, self._comparison.spread, frame.demo)
         self._client.flush()
@@ -208,7 +210,7 @@ class Visitor:
         marks, camera = MarkScene(self._client, size), Camera(self._client, size, self._plan.covered)
         plates = PlateScene(self._client, loaded.model)
         self._stage = Stage(name, loaded, body, marks, plates, camera, size)
-        self._look(START_VIEW)
+        self._look(self._view)
         if self._panels is not None:
             self._receive(self._panels, self._stage)
         return self._stage
@@ -247,6 +249,9 @@ class Visitor:
             lambda: view_of(self._client),
             self._film,
             self._url,
+            self._link.take_back,
+            self._notices.say,
+            self._notices.warn,
         )
 
     def _film(self, taken: RunTaken, lines: int, report: Callable[[float], None]) -> bytes:
@@ -280,8 +285,8 @@ class Visitor:
         settings = panels.settings
         if settings.changed:
             settings.changed = False
-            stage.body.see_through(settings.see_through)
-            self._comparison.see_through(settings.see_through)
+            stage.body.see_through(settings.see_through, settings.theme)
+            self._comparison.see_through(settings)
         picture = Picture(
             stage.loaded.model, truth.push, truth.gains.get("safe_border", 0.0), settings.arrow_scale
         )
@@ -306,10 +311,9 @@ class Visitor:
 
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
         truth = frame.truth
-        panels.status.follow(truth, told(frame, sample, loaded), sample.number("time"))
         panels.control.follow(truth)
         panels.learn.follow(truth, sample.number("time"), frame.lesson)
-        panels.share.follow(truth)
+        panels.share.follow(truth, frame.left)
         panels.ground.follow(truth)
         panels.mismatch.follow(truth)
         panels.control.see(sample)
@@ -322,6 +326,8 @@ class Visitor:
             panels.plots.along(truth.push.along)
         panels.plots.add(rows_of(frame.history, loaded.layout.width))
         self._comparison.after(frame, sample, panels.runs, panels.plots)
+        tried = self._comparison.tried(frame.foreseeing)
+        panels.status.follow(truth, told(frame, sample, loaded), sample.number("time"), tried)
         panels.plots.look_at(sample.number("time") if truth.behind else math.inf)
         if not truth.playing:
             panels.plots.draw()  # nothing comes later that could show the last samples
@@ -329,8 +335,9 @@ class Visitor:
             self.tell(notice)
 
     def _look(self, name: str) -> None:
-        """Turn the camera to the robot where it is now."""
+        """Turn the camera to the robot where it is now, and to what comes on stage later."""
         stage = self._stage
+        self._view = name if name in VIEWS else self._view
         if stage is not None and name in VIEWS:
             place, spread = stage.body.place_on_ground, self._comparison.spread
             stage.camera.look(name, place if spread is None else self._comparison.middle(place), spread)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from momentum_lab.app.marks import Color, Theme
+from momentum_lab.app.marks import Theme
 from momentum_lab.app.profile import RenderProfile
 from momentum_lab.app.viewer import Viewer
+from momentum_lab.palette import Color
 
 # Of the floor, its lines every 10 cm, its lines every metre.
-_COLORS: dict[Theme, tuple[Color, Color, Color]] = {
+FLOORS: dict[Theme, tuple[Color, Color, Color]] = {
     "light": ((246, 246, 244), (222, 222, 222), (176, 176, 176)),
-    "dark": ((44, 47, 52), (62, 66, 72), (104, 110, 118)),
+    "dark": ((56, 60, 66), (82, 87, 94), (132, 138, 146)),
 }
 
 
@@ -23,7 +24,7 @@ def add_world(client: Viewer, profile: RenderProfile) -> None:
 
 def add_floor(client: Viewer, height: float, theme: Theme, root: str = "") -> None:
     """Put the floor of a light or a dark page at a height, m, below a node; without one below the world's."""
-    plane, cell, section = _COLORS[theme]
+    plane, cell, section = FLOORS[theme]
     client.scene.add_grid(
         f"{root}/ground",
         position=(0.0, 0.0, height),

@@ -8,13 +8,18 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Picture
 
+from momentum_lab import palette
 from momentum_lab.finished import FinishedRun
+from momentum_lab.palette import css
 from momentum_lab.session import Session
 
-# The Okabe-Ito palette, each colour for the quantity that has it on the app's screen.
-COM, COP, GRANTED, CMP = "#e69f00", "#0072b2", "#56b4e9", "#d55e00"
-FORCE, SPIN, CHANGED = "#009e73", "#cc79a7", "#d55e00"
-MUTED, INK = "#6e6e6e", "#000000"
+# Each colour for the quantity that has it on the app's screen.
+COM, COP, CMP, CAPTURE = (css(color) for color in (palette.COM, palette.COP, palette.CMP, palette.CAPTURE))
+GRANTED, FORCE, SPIN = (css(color) for color in (palette.COP_WANTED, palette.GRF, palette.ANGULAR))
+LINEAR, DESIRED, ADMISSIBLE, MEASURED = (
+    css(color) for color in (palette.LINEAR, palette.DESIRED, palette.ADMISSIBLE, palette.MEASURED)
+)
+CHANGED, MUTED, INK = css(palette.VERMILLION), css(palette.GREY), css(palette.BLACK)
 
 
 def canvas(title: str, rows: int, columns: int, size: tuple[float, float], **options: Any) -> tuple[Any, Any]:

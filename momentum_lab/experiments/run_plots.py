@@ -8,11 +8,14 @@ from typing import Any
 import numpy as np
 
 from momentum_lab.experiments.canvas import (
+    ADMISSIBLE,
+    CAPTURE,
     CMP,
     COM,
     COP,
-    FORCE,
-    GRANTED,
+    DESIRED,
+    LINEAR,
+    MEASURED,
     MUTED,
     SPIN,
     band,
@@ -26,7 +29,7 @@ from momentum_lab.summary import corners_in_world
 
 _MOST_POINTS = 4000
 _DOTS_PER_INCH = 110
-_RATES = (("desired", MUTED, "--"), ("admissible", COP, "-"), ("measured", FORCE, "-"))
+_RATES = (("desired", DESIRED, "--"), ("admissible", ADMISSIBLE, "-"), ("measured", MEASURED, "-"))
 # A sole that presses less than this on the ground does not support, N.
 _LEAST_SUPPORT = 1.0
 
@@ -44,9 +47,14 @@ def over_time(run: FinishedRun) -> Any:
         axes[1, 0].plot(column("time"), rate[:, :3] @ linear, style, color=color, label=kind, lw=1.2)
         axes[2, 0].plot(column("time"), rate[:, 3:] @ angular, style, color=color, label=kind, lw=1.2)
     momentum = column("momentum")
-    axes[3, 0].plot(column("time"), momentum[:, :3] @ linear, color=COM, label="linear, along the push (N s)")
     axes[3, 0].plot(
-        column("time"), momentum[:, 3:] @ angular, color=SPIN, label="angular, about the axis across"
+        column("time"), momentum[:, :3] @ linear, color=LINEAR, label="linear, along the push (N s)"
+    )
+    axes[3, 0].plot(
+        column("time"),
+        momentum[:, 3:] @ angular,
+        color=SPIN,
+        label="angular, about the axis across (kg m²/s)",
     )
     for row in axes[1:3, 0]:
         cut_spikes(row)
@@ -69,7 +77,7 @@ def on_the_ground(run: FinishedRun) -> Any:
             name = "soles" if moment == 0 else "soles at the end"
             chart.plot(outline[:, 0], outline[:, 1], style, color=MUTED, lw=1.0, label=name)
     for name, color, label in (
-        ("capture_point", GRANTED, "capture"),
+        ("capture_point", CAPTURE, "capture point"),
         ("cop_measured", COP, "CoP"),
         ("com", COM, "CoM"),
     ):
@@ -126,7 +134,7 @@ def _points(axes: Any, run: FinishedRun, column: _Columns, forward: np.ndarray) 
         ("com", COM, "CoM"),
         ("cop_measured", COP, "CoP"),
         ("cmp", CMP, "CMP"),
-        ("capture_point", GRANTED, "capture"),
+        ("capture_point", CAPTURE, "capture point"),
     )
     for name, color, label in lines:
         axes.plot(time, 100.0 * (column(name)[:, :2] @ forward - origin), color=color, label=label, lw=1.2)

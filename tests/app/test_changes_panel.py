@@ -75,7 +75,7 @@ STIFF = SetGains(preset_named("stiff", "computed-torque").gains)
 CHANGES: list[tuple[Event, str]] = [
     (SetPriority(0.75), "priority: 0.25 → 0.75"),
     (SetGain("friction", 0.3), "friction: 0.6 → 0.3"),
-    (STIFF, "linear damping: 8 → 12 1∕s"),
+    (STIFF, "linear damping: 8 → 12 1/s"),
     (SelectController("whole-body-qp"), "controller: computed-torque → whole-body-qp"),
     (SelectPlanner("cop-to-com"), "planner: momentum → cop-to-com"),
     (SetDirections("linear+kz"), "directions: all → linear+kz"),
@@ -135,7 +135,7 @@ def test_another_controllers_gains_are_told_against_their_defaults(desk):
     desk.do(SelectController("slack-qp"))
     assert "com damping" not in desk.said
     desk.do(SetGain("com_damping", 9.0))
-    assert "com damping: 8 → 9 1∕s" in desk.said
+    assert "com damping: 8 → 9 1/s" in desk.said
 
 
 def test_a_run_again_and_standing_up_leave_the_list_as_it_is(desk):

@@ -61,7 +61,7 @@ def test_a_trace_needs_no_folder_that_a_process_which_is_stopped_could_leave(tak
 
 def test_every_other_kind(taken):
     assert decoded("r.json", made("run", taken)) == taken.run
-    assert made("table", taken).startswith(b"time,q.0,")
+    assert made("table", taken).startswith(b"time [s],q/base_x [m],")
     assert b"__VISER_EMBED_DATA__" in made("recording", taken)
     assert Image.open(io.BytesIO(made("plots", taken))).format == "PNG"
 

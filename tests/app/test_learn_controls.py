@@ -61,7 +61,7 @@ def test_push_starts_as_the_lessons_and_goes_where_the_sliders_say() -> None:
         ("controller", "controller", "slack-qp", SelectController("slack-qp")),
         ("momenta", "momenta held", "linear only", SetDirections("linear")),
         ("angular goal", "angular goal", "reference", SetAngularGoal("reference")),
-        ("linear_damping", "linear damping (1∕s)", 3.0, SetGain("linear_damping", 3.0)),
+        ("linear_damping", "linear damping (1/s)", 3.0, SetGain("linear_damping", 3.0)),
     ],
 )
 def test_every_control_asks_for_what_a_hand_asks_for(

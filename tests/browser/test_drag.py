@@ -14,7 +14,7 @@ from momentum_lab.recording import load_trace
 from momentum_lab.replay import replayed, trace_agreement
 from momentum_lab.share_code import from_code
 from tests.browser.conftest import OUTPUT, Opener, Served
-from tests.browser.lab_page import CANVAS, PATIENCE, LabPage
+from tests.browser.lab_page import CANVAS, PATIENCE, TALL, LabPage
 from tests.browser.test_share import code_of, downloaded
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
@@ -33,7 +33,7 @@ def pull(lab: LabPage, end: tuple[int, int]) -> None:
     for part in np.linspace(0.2, 1.0, 5):
         x, y = np.array(TRUNK) + part * (np.array(end) - TRUNK)
         lab.page.mouse.move(float(x), float(y))
-        lab.page.wait_for_timeout(200)
+        lab.page.wait_for_timeout(100)
 
 
 class Finger:
@@ -75,18 +75,16 @@ def changed(before: np.ndarray, after: np.ndarray, clip: dict[str, int]) -> floa
 
 
 def test_a_hand_in_the_picture(served: Served, open_page: Opener, tmp_path: Path) -> None:
-    lab = open_page(served.url, fingers=True).until_furnished()
+    lab = open_page(served.url, height=TALL, fingers=True).until_furnished()
     lab.expect_status("standing")
     lab.expect_ticks(plot=0)
     still = lab.picture(CANVAS)
 
     lab.page.keyboard.down("Shift")
     pull(lab, PULLED)
-    lab.page.wait_for_timeout(1000)
-    pulling = lab.picture(CANVAS)
+    lab.picture_with(lambda pulling: changed(still, pulling, ARROW) > 0.3, "no arrow where it is pulled")
+    lab.picture_with(lambda pulling: changed(still, pulling, FORCE) > 0.1, "no force beside the arrow")
     lab.save(OUTPUT / "drag_pulse.png")
-    assert changed(still, pulling, ARROW) > 0.3
-    assert changed(still, pulling, FORCE) > 0.1
     assert lab.com_travel() < 0.3
     lab.page.mouse.up()
     lab.page.keyboard.up("Shift")
@@ -109,8 +107,7 @@ def test_a_hand_in_the_picture(served: Served, open_page: Opener, tmp_path: Path
     lab.page.screenshot(path=OUTPUT / "drag_hold.png", timeout=PATIENCE)
     finger.lift()
     expect(slider(lab, "duration (ms)")).not_to_have_attribute("aria-valuenow", "100", timeout=PATIENCE)
-    lab.press("k")
-    lab.expect_text("paused")
+    lab.pause()
 
     lab.page.get_by_role("combobox", name="by hand").evaluate("b => b.click()")
     lab.page.get_by_role("option", name="pulse").evaluate("o => o.click()")
