@@ -8,7 +8,7 @@ from pathlib import Path
 
 import viser
 
-from momentum_lab.app import access_html, html, look_html, share_html
+from momentum_lab.app import access_html, html, keyboard_html, look_html, share_html
 from momentum_lab.app.appearance import Appearance, dress
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.demo_panel import DemoPanel
@@ -109,6 +109,7 @@ class Panels:
         appearance.add_ear(gui)
         gui.add_html(access_html.NAMES)
         gui.add_html(look_html.STYLE)
+        gui.add_html(keyboard_html.KEYS)
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         left = gui.add_panel()
         # The browser opens the first tab.
