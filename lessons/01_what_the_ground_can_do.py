@@ -40,7 +40,8 @@ STEPS = (
         "up, the green arrow under its feet."
     ),
     lab.Choice(
-        "A push of {push}, mostly from behind, ends. Just after it, which way does the ground push the feet?",
+        "A push of {push} from behind, a little from the right, has just ended. Which way does the ground push "
+        "the feet?",
         (
             lab.Option("Straight up, as before", lambda m: abs(m["brake"]) < 1.0),
             lab.Option("Up and forward: the robot is still going there", lambda m: m["brake"] >= 1.0),
@@ -50,15 +51,15 @@ STEPS = (
     lab.Number(
         "How hard does the ground then push along the floor? Forward counts as positive.", "brake", -200, 200
     ),
-    lab.Play("Watch the arrow under the feet lean.", "push", ("push", "push direction")),
+    lab.Play("Watch the green arrow lean.", "push", ("push", "push direction"), view="Side"),
     lab.Compare(
         "The arrow leans back: {size} against the motion. It never pulls down: it points up {upward} of the time.",
         ("brake", "upward"),
     ),
     lab.Explain(
-        "The CoM is the centre of mass. Mass times its speed is the linear momentum. A dot over a letter says "
-        "how fast it changes, and linear momentum changes by the force of the ground (Eq. 2). Left: the motion "
-        "of all parts. Right: the ground. They agree, so nothing else stops the robot.",
+        "The CoM is the centre of mass; mass times its speed is the linear momentum. A dot over a letter means "
+        "how fast it changes. Left: the motion of all parts. Right: the force of the ground. They agree "
+        "(Eq. 2), so nothing else stops the robot.",
         "push",
         AFTER,
         lab.Equation(
@@ -71,9 +72,9 @@ STEPS = (
         ),
     ),
     lab.Explain(
-        "Where the ground pushes matters too. A force that does not point at the CoM has a lever and turns the "
-        "body. How much the body turns about its CoM is its angular momentum; lever times force is how fast "
-        "that changes (Eq. 1).",
+        "Where the ground pushes matters, too. A force that passes by the CoM has a lever and turns the body. "
+        "How much the body turns about its CoM is its angular momentum; lever times force is how fast that "
+        "changes (Eq. 1).",
         "push",
         AFTER,
         lab.Equation(
@@ -93,7 +94,8 @@ STEPS = (
         ),
     ),
     lab.Prose(
-        "So the ground stops the CoM and turns the body, both with the same force. Who balances bargains with it."
+        "So one force does two things: it stops the CoM, and it turns the body. To balance is to share it "
+        "between them."
     ),
 )
 

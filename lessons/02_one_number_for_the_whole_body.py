@@ -8,13 +8,17 @@ from functools import lru_cache
 import numpy as np
 
 import momentum_lab.lesson as lab
-from momentum_lab.experiments.measured import push_end, times
+from momentum_lab.experiments.measured import motion_done, pelvis_turn
 from momentum_lab.lesson import quantities as q
 from momentum_lab.lesson import spins
 from momentum_lab.momentum.centroidal import link_by_link
 from momentum_lab.robot.state import State
 
-RUNS = {"push": lab.Run("fig8", {"seconds": 0.35})}
+RUNS = {
+    "balanced": lab.Run("kick", {"seconds": 1.2}),
+    "bare": lab.Run("kick", {"seconds": 1.2, "controlled": "linear"}),
+}
+KICK = 0.7  # the leg is on its way forward, s
 
 
 @lru_cache(1)
@@ -25,79 +29,86 @@ def of_links(session):
     return np.array([link_by_link(session.robot, state).momenta_about_com[:, 4] for state in states])
 
 
-def at_the_end(session):
-    """The angular momentum of every link at the end of the push (links,), N m s."""
-    return of_links(session)[np.searchsorted(times(session), push_end(session))]
+def wander(session):
+    """How far the force of the ground wanders forward and back, mm."""
+    return 1e3 * np.ptp(q.COP_X.values(session))
 
 
 def cancelled(session):
-    """The part of the links' angular momenta that cancels, %."""
-    spin = at_the_end(session)
+    """The part of the links' angular momenta that cancels meanwhile, %."""
+    spin = of_links(session)[round(KICK / session.scenario.timestep)]
     return 100.0 * (1.0 - abs(spin.sum()) / np.abs(spin).sum())
 
 
-def felt(session):
-    """How many independent numbers all speeds amount to for the ground."""
-    return np.linalg.matrix_rank(session.dynamics.centroidal_map)
+def trunk(session):
+    """How far the trunk tips forward and back, degrees."""
+    return np.degrees(np.ptp(pelvis_turn(session)[:, 1]))
+
+
+def least_done(runs):
+    """The least of what any joint does of its kick, %."""
+    return 100.0 * min(motion_done(run).max(axis=0).min() for run in runs.values())
 
 
 MEASURES = {
-    "push": lab.of("push", q.push_force, "N"),
-    "joints": lab.of("push", lambda s: s.robot.na, "joints"),
-    "speeds": lab.of("push", lambda s: s.robot.nv, "speeds"),
-    "felt": lab.of("push", felt, "numbers"),
-    "unfelt": lab.of("push", lambda s: s.robot.nv - felt(s), "ways"),
-    "forward": lab.of("push", lambda s: np.maximum(at_the_end(s), 0).sum(), "N m s", ".2f"),
-    "backward": lab.of("push", lambda s: -np.minimum(at_the_end(s), 0).sum(), "N m s", ".2f"),
-    "cancelled": lab.of("push", cancelled, "%"),
+    "speeds": lab.of("balanced", lambda s: s.robot.nv, "speeds"),
+    "felt": lab.of("balanced", lambda s: np.linalg.matrix_rank(s.dynamics.centroidal_map), "numbers"),
+    "kick": lab.Measure(least_done, "%"),
+    "balanced": lab.of("balanced", wander, "mm"),
+    "bare": lab.of("bare", wander, "mm"),
+    "times": lab.Measure(lambda runs: wander(runs["bare"]) / wander(runs["balanced"]), "times"),
+    "trunk": lab.of("balanced", trunk, "degrees"),
+    "bare_trunk": lab.of("bare", trunk, "degrees"),
+    "cancelled": lab.of("balanced", cancelled, "%"),
 }
 
 STEPS = (
     lab.Prose(
-        "The robot has {joints}, and its body can move and turn as a whole: {speeds} in all. A push of {push} "
-        "moves every part of it differently."
-    ),
-    lab.Number(
-        "Each part has an angular momentum of its own. As the push ends, some turn forward, some backward. How "
-        "much of it cancels in the sum?",
-        "cancelled",
-        0,
-        100,
+        "Two robots stand on one leg and make the same kick. The balanced one swings its trunk and arms against "
+        "the leg. The bare one only keeps its CoM, the centre of mass, in its place."
     ),
     lab.Choice(
-        "In how many independent ways can the {speeds} change without changing what the ground feels?",
+        "More of the balanced one moves. Below which of them does the green arrow, the force of the ground, "
+        "wander farther?",
         (
-            lab.Option("None: whatever moves is felt", lambda m: m["unfelt"] == 0),
-            lab.Option("About half of them", lambda m: 0 < m["unfelt"] <= 0.75 * m["speeds"]),
-            lab.Option("Nearly all of them", lambda m: m["unfelt"] > 0.75 * m["speeds"]),
+            lab.Option(
+                "The balanced one: more motion, more to feel", lambda m: m["balanced"] > 2.0 * m["bare"]
+            ),
+            lab.Option("Both alike: it is the same kick", lambda m: 0.5 <= m["balanced"] / m["bare"] <= 2.0),
+            lab.Option("The bare one", lambda m: m["bare"] > 2.0 * m["balanced"]),
         ),
     ),
-    lab.Play("It is short: play it slowly. Which parts turn forward, which back?", "push", ("push",)),
+    lab.Number(
+        "The joints and the body of each robot have {speeds}. How many numbers tell all that the ground feels of "
+        "them?",
+        "felt",
+        0,
+        40,
+    ),
+    lab.Play("Watch where the green arrows stand.", "balanced", ("momenta",), beside="bare"),
     lab.Compare(
-        "Forward {forward}, backward {backward}: {cancelled} cancels. Of {speeds} the ground feels {felt}; "
-        "{unfelt} to move it does not feel at all.",
-        ("cancelled", "felt", "unfelt"),
+        "Below the balanced robot the arrow wandered by {balanced}, below the bare one by {bare}. The balanced one "
+        "tips its trunk by {trunk} as well, and the ground feels less: its parts cancel each other.",
+        ("balanced", "bare", "felt"),
     ),
     lab.Explain(
-        "One matrix, A_G, adds the momenta of all parts (Eqs. 12, 16). Times the speeds it gives three numbers "
-        "of linear and three of angular momentum. The ground answers to these alone: so a controller may think "
-        "of six numbers first, and of joints later.",
-        "push",
-        0.3,
+        "Each part of the body turns about the CoM: that is its angular momentum. Here {cancelled} of "
+        "it cancels. One table of numbers, A_G, adds up all parts at once (Eqs. 12, 16). Speeds go in, and "
+        "{felt} come out: three of linear, three of angular momentum. The ground feels no others, so a "
+        "controller can think of these first, and of joints later.",
+        "balanced",
+        KICK,
         lab.Equation(
-            "k_y = k_forward + k_backward",
+            "k_y = k_forward + k_back",
             {
                 "k_y": lab.Symbol(
-                    lambda s: spins.of_speeds(s)[:, 1].sum(1),
-                    "N m s",
-                    "of the body: a row of A_G times speeds",
-                    ".3f",
+                    lambda s: spins.of_speeds(s)[:, 1].sum(1), "N m s", "of the body: a row of A_G", ".2f"
                 ),
                 "k_forward": lab.Symbol(
-                    lambda s: np.maximum(of_links(s), 0).sum(1), "N m s", "of parts turning forward", ".3f"
+                    lambda s: np.maximum(of_links(s), 0).sum(1), "N m s", "of parts turning forward", ".2f"
                 ),
-                "k_backward": lab.Symbol(
-                    lambda s: np.minimum(of_links(s), 0).sum(1), "N m s", "of parts turning backward", ".3f"
+                "k_back": lab.Symbol(
+                    lambda s: np.minimum(of_links(s), 0).sum(1), "N m s", "of parts turning back", ".2f"
                 ),
             },
             within=1e-6,
@@ -107,7 +118,12 @@ STEPS = (
 )
 
 CLAIMS = (
-    lab.Stands("push"),
-    lab.Bound("parts turn both ways, and much cancels", "cancelled", low=30.0),
+    lab.Stands("balanced", "the balanced robot"),
+    lab.Stands("bare", "the bare robot"),
+    lab.Bound("both kick", "kick", low=80.0),
+    lab.Bound("the arrow of the bare one wanders several times as far", "times", low=4.0),
+    lab.Bound("the balanced one moves its trunk", "trunk", low=8.0),
+    lab.Bound("the bare one does not", "bare_trunk", high=2.0),
+    lab.Bound("what parts turn forward and back cancels", "cancelled", low=90.0),
     lab.Bound("what is left is six numbers", "felt", low=6.0, high=6.0),
 )

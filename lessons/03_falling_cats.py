@@ -7,6 +7,7 @@ import numpy as np
 
 import momentum_lab.lesson as lab
 from momentum_lab.experiments import flight
+from momentum_lab.experiments.arm_swing import spin
 from momentum_lab.experiments.flight_push import given
 from momentum_lab.experiments.measured import pelvis_turn, push_end, times
 from momentum_lab.lesson import spins
@@ -19,6 +20,12 @@ def turn(session):
     return np.degrees(np.linalg.norm(pelvis_turn(session), axis=1))
 
 
+def upward(session):
+    """The part of its turn that is about the vertical, %."""
+    turned = np.abs(pelvis_turn(session)[-1])
+    return 100.0 * turned[2] / np.linalg.norm(turned)
+
+
 def bent(session):
     """How far the joints are from where they were, in the end, degrees."""
     angles = session.recording.column("q")[:, 7:]
@@ -27,8 +34,8 @@ def bent(session):
 
 def lost(session):
     """How far the angular momentum strays after the push, as part of it, %."""
-    spin = session.recording.column("momentum")[times(session) > push_end(session) + 1e-9, 3:]
-    return 100.0 * np.abs(spin - spin[0]).max() / np.linalg.norm(spin[0])
+    kept = session.recording.column("momentum")[times(session) > push_end(session) + 1e-9, 3:]
+    return 100.0 * np.abs(kept - kept[0]).max() / np.linalg.norm(kept[0])
 
 
 def touched(runs):
@@ -38,15 +45,11 @@ def touched(runs):
 MEASURES = {
     "height": lab.of("cat", lambda s: s.scenario.drop_height, "m", ".1f"),
     "touched": lab.Measure(touched, "N"),
-    "none": lab.of(
-        "cat",
-        lambda s: np.linalg.norm(s.recording.column("momentum")[:, 3:], axis=1).max(),
-        "N m s",
-        ".2f",
-    ),
+    "none": lab.of("cat", lambda s: spin(s).max(), "N m s", ".2f"),
     "bent": lab.of("cat", bent, "degrees", ".1f"),
     "foretold": lab.of("cat", lambda s: np.degrees(flight.foretold(s)[-1]), "degrees", ".1f"),
     "cat": lab.of("cat", lambda s: turn(s)[-1], "degrees", ".1f"),
+    "upright": lab.of("cat", upward, "%"),
     "midway": lab.of("cat", lambda s: turn(s).max(), "degrees", ".1f"),
     "kicked": lab.of("kicked", lambda s: turn(s)[-1], "degrees", ".1f"),
     "kick": lab.of("kicked", lambda s: np.linalg.norm(given(s)), "N m s", ".2f"),
@@ -56,36 +59,33 @@ MEASURES = {
 
 STEPS = (
     lab.Prose(
-        "A robot falls from {height}, without any turning. Weight acts at the CoM and has no lever, so its "
-        "angular momentum has to stay zero. Its legs may move, but must be back in place before it lands."
+        "A robot is let go {height} up, at rest. Its weight acts at the CoM and has no lever, so its angular "
+        "momentum stays zero. Its legs may move, but must be back in place before it lands."
     ),
     lab.Choice(
-        "Is its body turned when it lands?",
+        "Does its chest face another way when it lands?",
         (
             lab.Option("No: without angular momentum nothing turns", lambda m: m["midway"] < 1.0),
             lab.Option(
                 "On the way, but it turns back with the legs", lambda m: m["cat"] < 1.0 <= m["midway"]
             ),
-            lab.Option("Yes, and it stays turned", lambda m: m["cat"] >= 1.0),
+            lab.Option("Yes", lambda m: m["cat"] >= 1.0),
         ),
     ),
     lab.Number(
-        "Beside it another one falls, kicked in the air. How much of the kick's angular momentum is lost "
-        "before it lands?",
-        "lost",
-        0,
-        100,
+        "Another one is kicked in the air. How much of its spin is lost before it lands?", "lost", 0, 100
     ),
-    lab.Play("Play it slowly. Watch the hips.", "cat", ("push", "push height"), beside="kicked"),
+    lab.Play("You look from the front. Slow it down.", "cat", ("push",), beside="kicked", view="Front"),
     lab.Compare(
-        "The legs are back to within {bent}, and the body is turned by {cat}: so a cat lands on its feet. The "
-        "legs had up to {limbs}, the body as much the other way, the sum {none} at most. Of the kick's {kick}, "
-        "{lost} was lost.",
+        "The legs are back to within {bent}. The body has turned by {cat} about the vertical. The "
+        "legs had up to {limbs}, the body as much the other way, and the sum was never more than {none}. Of "
+        "the kick's {kick}, {lost} was lost.",
         ("cat", "bent", "lost"),
     ),
     lab.Prose(
-        "The legs swung one way while they were spread, and back while they were not. How far that turns the "
-        "body depends on the way they took, not on how fast: geometry alone gives {foretold} (Eq. 15)."
+        "The legs swung one way while spread, and back while together. Spread legs turn the body farther, so it "
+        "does not turn back as far. Only their way counts, not their speed: geometry alone gives {foretold} "
+        "(Eq. 15). A cat does the like about its spine."
     ),
     lab.Explain(
         "In the air, what the joints gain in angular momentum the body loses. Their sum is what the kick gave, "
@@ -119,6 +119,7 @@ CLAIMS = (
     lab.Bound("the limbs have much more", "limbs", low=5.0),
     lab.Bound("they come back", "bent", high=0.5),
     lab.Bound("still the body is turned", "cat", low=20.0),
+    lab.Bound("about the vertical", "upright", low=95.0),
     lab.Bound("by what geometry gives", "foretold", low=20.0),
     lab.Bound("the angular momentum of a kick stays", "lost", high=1.0),
     lab.Bound("and turns the body, too", "kicked", low=10.0),

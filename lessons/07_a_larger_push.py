@@ -6,14 +6,14 @@ Balance asks for a CoP in front of the toes, where there is no foot. Something h
 import numpy as np
 
 import momentum_lab.lesson as lab
-from momentum_lab.experiments.measured import com_moved, rate_gap, times, upright
+from momentum_lab.experiments.measured import com_moved, rate_gap, upright
 from momentum_lab.lesson import quantities as q
 
 RUNS = {
     "bend": lab.Run("fig7", {"priority": 0.0, "seconds": 1.8}),
     "upright": lab.Run("fig7", {"priority": 1.0}),
 }
-EARLY = 0.2  # of the time after the push began: before anything is decided, s
+END = 0.3  # of the push, s
 
 
 def asked_beyond(session):
@@ -23,8 +23,8 @@ def asked_beyond(session):
 
 
 def missing(row):
-    """How much of a desired momentum rate a robot gives up early on, N or N m."""
-    return lambda s: np.abs(rate_gap(s)[times(s) < s.pushes[0].start + EARLY, row]).max()
+    """How much of a desired momentum rate a robot gives up (n,), N or N m."""
+    return lambda s: np.abs(rate_gap(s)[:, row])
 
 
 def way(session):
@@ -37,46 +37,49 @@ MEASURES = {
     "asked": lab.of("bend", asked_beyond, "mm"),
     "bend": lab.fate("bend"),
     "upright": lab.fate("upright"),
-    "bend_turns": lab.of("bend", missing(4), "N m"),
-    "bend_brakes": lab.of("bend", missing(0), "N", ".1f"),
-    "upright_turns": lab.of("upright", missing(4), "N m", ".1f"),
-    "upright_brakes": lab.of("upright", missing(0), "N"),
+    "bend_turns": lab.at("bend", END, missing(4), "N m"),
+    "bend_brakes": lab.at("bend", END, missing(0), "N", ".1f"),
+    "upright_turns": lab.at("upright", END, missing(4), "N m", ".1f"),
+    "upright_brakes": lab.at("upright", END, missing(0), "N"),
     "bend_way": lab.of("bend", way, "mm"),
-    "upright_way": lab.of("upright", way, "mm"),
+    "bend_end": lab.of("bend", lambda s: 1e3 * com_moved(s)[-1, 0], "mm"),
 }
 
 STEPS = (
     lab.Prose(
-        "Two robots get a push of {push} from behind. To brake as they want, they would need a CoP {asked} in "
-        "front of where the feet end. It cannot go there. One robot keeps braking its CoM, and lets its body "
-        "bend forward. The other keeps its body from turning, and brakes less."
+        "Two robots get a push of {push} from behind. To stop their CoM and stay upright, they would need a CoP "
+        "{asked} in front of what the feet can give. One brakes its CoM all the same, and its body "
+        "bends. The other stays upright and brakes less."
     ),
     lab.Choice(
-        "Same push, same feet. Who is standing in the end?",
+        "Same push, same feet. Which of the two falls?",
         (
-            lab.Option("Both", lambda m: m["bend"] == "stands" == m["upright"]),
-            lab.Option("Only the one that stays upright", lambda m: m["bend"] != "stands" == m["upright"]),
-            lab.Option("Only the one that bends", lambda m: m["upright"] != "stands" == m["bend"]),
-            lab.Option("Neither", lambda m: "stands" not in (m["bend"], m["upright"])),
+            lab.Option("Neither", lambda m: m["bend"] == "stands" == m["upright"]),
+            lab.Option(
+                "The one that bends: it gives up its posture", lambda m: m["bend"] != "stands" == m["upright"]
+            ),
+            lab.Option(
+                "The one that stays upright: it brakes less", lambda m: m["upright"] != "stands" == m["bend"]
+            ),
+            lab.Option("Both", lambda m: "stands" not in (m["bend"], m["upright"])),
         ),
     ),
     lab.Play(
-        "Watch the trunks, then the feet. The priority you can move is that of the first robot.",
+        "Watch the trunks, then the feet. Your priority is that of the one that bends.",
         "bend",
         ("push", "priority"),
         beside="upright",
     ),
     lab.Compare(
-        "The robot that bends {bend}; the one that stays upright {upright}. Their CoMs went {bend_way} and "
-        "{upright_way}.",
-        ("bend", "upright", "bend_way", "upright_way"),
+        "The robot that bends {bend}; its CoM went {bend_way} and came back. The one that stays upright {upright}.",
+        ("bend", "upright", "bend_way"),
     ),
     lab.Explain(
-        "The CoP holds braking and turning together (Eq. 21): with the CoP stuck at the toes, more of one is "
-        "less of the other. Who bends gave up {bend_turns} of its turning goal and {bend_brakes} of braking; "
-        "who stays upright {upright_turns} and {upright_brakes}. Only braking stops the CoM.",
+        "The CoP ties braking to turning (Eq. 21). With the CoP stuck at the toes, the ground brakes harder only "
+        "if the body may turn. The bent one lets it turn with {bend_turns} more than it wants, and brakes as "
+        "it wants. The upright one does not turn, and lacks {upright_brakes} of braking.",
         "bend",
-        0.3,
+        END,
         lab.Equation(
             "p_x = r_x - (r_z * dl_x + dk_y) / f_z",
             {
@@ -93,9 +96,8 @@ STEPS = (
         ),
     ),
     lab.Prose(
-        "So that is why the trunk rotates: the feet end, and turning is what lets the ground push the CoM back "
-        "harder than the toes alone allow. Priority 0 bends, priority 1 stays upright; between them is every "
-        "mixture."
+        "So this is why the trunk rotates: the feet end, and only a body that turns lets the ground push the CoM "
+        "back harder. Priority 0 bends, priority 1 stays upright, and between them is every mixture."
     ),
 )
 
@@ -103,6 +105,7 @@ CLAIMS = (
     lab.Bound("the push asks for a CoP beyond the feet", "asked", low=5.0),
     lab.Stands("bend", "the robot that bends"),
     lab.Falls("upright", "the robot that stays upright"),
+    lab.Bound("its CoM comes back", "bend_end", low=-10.0, high=10.0),
     lab.Bound("the one that bends keeps braking", "bend_brakes", high=1.0),
     lab.Bound("and gives up turning", "bend_turns", low=5.0),
     lab.Bound("the other keeps its body from turning", "upright_turns", high=1.0),

@@ -1,6 +1,6 @@
 """The chapter's push
 
-A robot in a textbook was pushed, and stood by turning its body. The same push, scaled to yours: which way?
+A robot in a textbook stood a push by turning its body. When do the feet of yours stop being enough?
 """
 
 import numpy as np
@@ -9,12 +9,26 @@ import momentum_lab.lesson as lab
 from momentum_lab.experiments.measured import com_moved, push_end, rate_gap, saturated, times
 from momentum_lab.lesson import quantities as q
 
-RUNS = {"push": lab.Run("fig8")}
+HALF = (lab.Push(velocity_change=0.12, duration=0.1, start=0.2),)
+RUNS = {"push": lab.Run("fig8"), "half": lab.Run("fig8", {"pushes": HALF})}
+END = 0.3  # of the push, s
 
 
 def outside(session):
     """How long the desired CoP lies beyond the feet, ms."""
     return 1e3 * saturated(session).sum() * session.scenario.timestep
+
+
+def reach(session, name):
+    """How far ahead of its place a CoP goes, mm."""
+    point = session.recording.column(name)[:, 0]
+    return 1e3 * (point.max() - point[0])
+
+
+def enough(runs):
+    """The part of the chapter's push that asks for a CoP just at the edge, by proportion, %."""
+    part = runs["half"].pushes[0].impulse / runs["push"].pushes[0].impulse
+    return 100.0 * part * reach(runs["push"], "cop_admissible") / reach(runs["half"], "cop_desired")
 
 
 def spin(session):
@@ -23,55 +37,54 @@ def spin(session):
     return values[np.abs(values).argmax()]
 
 
-def quiet(session):
-    """The same before the push and in the last half second, ms."""
-    clock = times(session)
-    still = (clock < session.pushes[0].start) | (clock > session.scenario.seconds - 0.5)
-    return 1e3 * saturated(session)[still].sum() * session.scenario.timestep
-
-
 MEASURES = {
     "push": lab.of("push", q.push_force, "N"),
+    "half": lab.of("half", q.push_force, "N"),
     "lasts": lab.of("push", lambda s: 1e3 * s.pushes[0].duration, "ms"),
     "mass": lab.of("push", lambda s: s.robot.mass, "kg", ".1f"),
     "speed": lab.of("push", lambda s: s.pushes[0].impulse / s.robot.mass, "m/s", ".2f"),
+    "enough": lab.Measure(enough, "%"),
     "outside": lab.of("push", outside, "ms"),
-    "quiet": lab.of("push", quiet, "ms"),
+    "half_outside": lab.of("half", outside, "ms"),
+    "twice": lab.Measure(
+        lambda runs: reach(runs["push"], "cop_desired") / reach(runs["half"], "cop_desired"), "times", ".2f"
+    ),
     "braking": lab.of("push", lambda s: np.abs(rate_gap(s)[:, :2]).max(), "N", ".2f"),
-    "turning": lab.of("push", lambda s: np.abs(rate_gap(s)[:, 4]).max(), "N m", ".1f"),
+    "turning": lab.at("push", END, lambda s: np.abs(rate_gap(s)[:, 4]), "N m", ".1f"),
     "spin": lab.of("push", spin, "N m s", ".2f"),
     "way": lab.of("push", lambda s: 1e3 * com_moved(s)[:, 0].max(), "mm"),
+    "end": lab.of("push", lambda s: 1e3 * com_moved(s)[-1, 0], "mm", ".1f"),
 }
 
 STEPS = (
     lab.Prose(
-        "The chapter pushes a robot of its own. Yours weighs {mass}; to give its CoM the same {speed} within "
-        "{lasts}, the push is {push}."
+        "The chapter pushes a robot of its own to {speed} within {lasts}. Yours weighs {mass}: for the same "
+        "speed it takes {push}."
     ),
-    lab.Choice(
-        "The push comes from behind. Which way does the body turn while the robot brakes?",
-        (
-            lab.Option("It leans back, against the push", lambda m: m["spin"] < -0.1),
-            lab.Option("Hardly at all", lambda m: abs(m["spin"]) <= 0.1),
-            lab.Option("It bends forward, with the push", lambda m: m["spin"] > 0.1),
-        ),
+    lab.Number(
+        "Up to which part of this push can the feet do it alone, with no need to turn the body?",
+        "enough",
+        0,
+        100,
     ),
-    lab.Number("For how long in all does the robot want a CoP beyond its feet?", "outside", 0, 1000),
     lab.Play(
-        "Slow it down. The hollow square is the CoP that it wants, the diamond the one it has. Then the other robot.",
+        "Beside it, half the push. The hollow square is the CoP that a robot wants, the diamond the one it has. "
+        "Then find the smallest push that parts them, on your robot or on another.",
         "push",
         ("push", "robot"),
+        beside="half",
+        view="Feet",
     ),
     lab.Compare(
-        "It bent forward. For {outside} it wanted more than its feet have; before the push and at the end for "
-        "{quiet}. The CoM moved {way} and came back.",
-        ("outside", "way", "spin"),
+        "Half the push never asked for more than the feet have. The whole push asked {twice} as far ahead, for "
+        "{outside} beyond the feet. In proportion, the feet are enough for {enough} of it.",
+        ("enough", "outside"),
     ),
     lab.Explain(
-        "What the feet cannot give becomes turning. Braking was kept to within {braking}. Turning gave way by "
-        "up to {turning}: the part of the CoP that is missing, times the force.",
+        "What the feet cannot give becomes turning: the missing part of the CoP, times the force. Here it is "
+        "{turning}, and bends the body forward. Braking is kept, and so the CoM came back: it went {way}.",
         "push",
-        0.3,
+        END,
         lab.Equation(
             "dk_a = dk_d + f_z * (p_d - p_a)",
             {
@@ -85,14 +98,19 @@ STEPS = (
             unit="N m",
             share=0.99,
         ),
+        view="Whole robot",
     ),
 )
 
 CLAIMS = (
     lab.Stands("push"),
+    lab.Stands("half", "after half the push the robot"),
     lab.Bound("the robot asks for more than its feet can give", "outside", low=50.0),
-    lab.Bound("but neither before the push nor at the end", "quiet", high=0.0),
+    lab.Bound("after half the push it does not", "half_outside", high=0.0),
+    lab.Bound("twice the push asks for twice as much", "twice", low=1.8, high=2.2),
+    lab.Bound("the feet are enough for more than half", "enough", low=51.0, high=95.0),
     lab.Bound("braking is kept", "braking", high=1.0),
     lab.Bound("turning gives way", "turning", low=5.0),
     lab.Bound("the body turns with the push", "spin", low=0.2),
+    lab.Bound("the CoM comes back", "end", low=-5.0, high=5.0),
 )

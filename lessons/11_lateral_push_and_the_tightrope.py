@@ -1,45 +1,61 @@
 """Lateral push and the tightrope
 
-Someone on a tightrope, pushed to the left: which way do the arms and the free leg swing, and why?
+Someone on a tightrope is pushed to the left: which way do the arms and the free leg swing, and why?
 """
 
 import numpy as np
 
 import momentum_lab.lesson as lab
 from momentum_lab.experiments.fig5 import edge, swing_foot
-from momentum_lab.experiments.measured import com_outside_goal, pelvis_turn, push_start, times
+from momentum_lab.experiments.measured import com_outside_goal
 from momentum_lab.lesson import quantities as q
+from momentum_lab.momentum.centroidal import link_by_link
+from momentum_lab.robot.state import State
 
 RUNS = {"push": lab.Run("fig5", {"seconds": 2.2})}
+AFTER = 0.32  # just after the push, s
+ARMS, LEGS = ("arm_", "gripper", "shoulder", "elbow", "wrist"), ("leg_", "hip", "knee", "ankle")
 
 
-def early(session, values):
-    """The part of an array within six tenths of a second after the push began."""
-    clock = times(session)
-    return values[(clock > push_start(session)) & (clock < push_start(session) + 0.6)]
+def spin(session):
+    """Angular momentum to the left, about x (n,), N m s."""
+    return -session.recording.column("momentum")[:, 3]
 
 
-def roll(session):
-    """Largest early roll of the pelvis, degrees; to the left counts as positive."""
-    turned = -np.degrees(early(session, pelvis_turn(session)[:, 0]))
-    return turned[np.abs(turned).argmax()]
+def share(words, side=""):
+    """The part of the largest angular momentum that some links have, by their joints' names, %."""
+
+    def part(session):
+        tick = spin(session).argmax()
+        state = State(session.recording.column("q")[tick], session.recording.column("v")[tick])
+        found = link_by_link(session.robot, state)
+        named = [any(word in name for word in words) and side in name for name in found.joint_names]
+        return -100.0 * found.momenta_about_com[named, 3].sum() / spin(session)[tick]
+
+    return part
 
 
-def left(session):
-    """The part of the largest angular momentum that is there at the end, %."""
-    spin = np.abs(session.recording.column("momentum")[:, 3])
-    return 100.0 * spin[-1] / spin.max()
+def beyond_edge(session):
+    """How far the CMP is outside the foot's edge (n,), mm."""
+    return 1e3 * (q.CMP_Y.values(session) - edge(session))
+
+
+def inside_edge(session):
+    """How far the CoP is inside it (n,), mm."""
+    return 1e3 * (edge(session) - q.COP_Y.values(session))
 
 
 MEASURES = {
     "push": lab.of("push", q.push_force, "N"),
-    "cmp": lab.of("push", lambda s: 1e3 * (q.CMP_Y.values(s).max() - edge(s)), "mm"),
-    "cop": lab.of("push", lambda s: 1e3 * (edge(s) - q.COP_Y.values(s).max()), "mm", ".1f"),
-    "roll": lab.of("push", roll, "degrees", ".1f"),
-    "spin": lab.of("push", lambda s: -s.recording.column("momentum")[:, 3].min(), "N m s", ".2f"),
-    "left": lab.of("push", left, "%"),
+    "arms": lab.of("push", share(ARMS), "%"),
+    "leg": lab.of("push", share(LEGS, "right"), "%"),
     "foot": lab.of("push", lambda s: 1e3 * np.linalg.norm(swing_foot(s), axis=1).max(), "mm"),
     "foot_up": lab.of("push", lambda s: 1e3 * swing_foot(s)[:, 1].max(), "mm"),
+    "cmp": lab.at("push", AFTER, beyond_edge, "mm", ".1f"),
+    "cop": lab.at("push", AFTER, inside_edge, "mm", ".1f"),
+    "farthest": lab.of("push", lambda s: inside_edge(s).min(), "mm", ".1f"),
+    "spin": lab.of("push", lambda s: spin(s).max(), "N m s", ".2f"),
+    "left": lab.of("push", lambda s: 100.0 * abs(spin(s)[-1]) / spin(s).max(), "%"),
     "end": lab.of("push", lambda s: 1e3 * np.linalg.norm(com_outside_goal(s)[-1]), "mm", ".1f"),
 }
 
@@ -48,27 +64,32 @@ STEPS = (
         "The robot stands on its left leg: no rope, but a narrow foot. A push of {push} comes from the right."
     ),
     lab.Choice(
-        "Which way does its body roll at first?",
+        "Which way do its arms and its free leg go round at first?",
         (
-            lab.Option("To the right, against the push", lambda m: m["roll"] <= -1.0),
-            lab.Option("Not at all", lambda m: abs(m["roll"]) < 1.0),
-            lab.Option("To the left, with the push", lambda m: m["roll"] >= 1.0),
+            lab.Option("To the right, against the push", lambda m: max(m["arms"], m["leg"]) <= -5.0),
+            lab.Option("The arms one way, the leg the other", lambda m: m["arms"] * m["leg"] < -25.0),
+            lab.Option("To the left, with the push", lambda m: min(m["arms"], m["leg"]) >= 5.0),
         ),
     ),
-    lab.Number("How far does the free foot swing?", "foot", 0, 500),
-    lab.Play("Look from the front. Then push from either side.", "push", ("push", "push direction")),
+    lab.Number("How much of the whole body's angular momentum do the arms take?", "arms", 0, 100),
+    lab.Play(
+        "You look from the front: its left is on your right. Watch the hands and the free foot.",
+        "push",
+        ("push", "push direction"),
+        view="Front",
+    ),
     lab.Compare(
-        "The body rolled by {roll} with the push. The free foot swung by {foot}, {foot_up} of it upward: out "
-        "and up, as on a tightrope.",
-        ("roll", "foot", "foot_up"),
+        "Everything went to the left, with the push. The arms took {arms} of the angular momentum, the free leg "
+        "{leg}: it swung by {foot}, {foot_up} of it upward.",
+        ("arms", "leg", "foot"),
     ),
     lab.Explain(
-        "To stop the CoM, the ground must push to the right, harder than a force through the CoM could. So the "
-        "CMP goes {cmp} beyond the edge, the CoP stays {cop} inside, and the gap turns body and leg to the "
-        "left (Eq. 23). They take up {spin} and give it back: {left} is left, and the CoM ends {end} from its "
-        "place.",
+        "To stop the CoM the ground must push to the right, harder than a force through the CoM could. So the "
+        "CMP goes {cmp} beyond the edge, while the CoP stays {cop} inside. The gap turns the body to the left "
+        "(Eq. 23). Arms and leg reach far out, so they take up much of it. They give it back: {left} of {spin} "
+        "is left at the end.",
         "push",
-        0.35,
+        AFTER,
         lab.Equation(
             "dk_x = f_z * (p_y - s_y)",
             {"dk_x": q.ROLLING, "f_z": q.FORCE_Z, "p_y": q.COP_Y, "s_y": q.CMP_Y},
@@ -84,9 +105,11 @@ CLAIMS = (
     lab.Stands("push"),
     lab.Bound("the CMP leaves the foot", "cmp", low=5.0),
     lab.Bound("the CoP does not", "cop", low=0.0),
-    lab.Bound("the body rolls with the push", "roll", low=2.0),
-    lab.Bound("and takes the spin", "spin", low=0.2),
-    lab.Bound("and gives it back", "left", high=10.0),
+    lab.Bound("nor at any other time", "farthest", low=0.0),
+    lab.Bound("the body turns with the push", "spin", low=0.2),
+    lab.Bound("the arms take much of it", "arms", low=20.0),
+    lab.Bound("and the free leg", "leg", low=10.0),
+    lab.Bound("they give it back", "left", high=10.0),
     lab.Bound("the free foot swings", "foot", low=10.0),
     lab.Bound("upward too", "foot_up", low=5.0),
     lab.Bound("the CoM comes back", "end", high=5.0),

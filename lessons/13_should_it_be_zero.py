@@ -10,6 +10,7 @@ from momentum_lab.experiments.arm_swing import spin, turned
 from momentum_lab.experiments.measured import motion_done
 from momentum_lab.lesson import spins
 
+SWUNG = 2.65  # the arms are fast, s
 RUNS = {
     "zero": lab.Run("arm-swing", {"seconds": 3.0}),
     "its_own": lab.Run("arm-swing", {"seconds": 3.0, "angular_goal": "reference"}),
@@ -42,8 +43,17 @@ def about_it(part):
     return lambda s: part(s)[:, axis(s)]
 
 
+def against(session):
+    """What the rest has against the arms then, as part of theirs, %."""
+    tick = round(SWUNG / session.scenario.timestep)
+    return -100.0 * about_it(spins.of_rest)(session)[tick] / about_it(spins.of_motion)(session)[tick]
+
+
 MEASURES = {
     "arms": lab.Measure(least_done, "%"),
+    "arms_have": lab.at("zero", SWUNG, lambda s: np.abs(about_it(spins.of_motion)(s)), "N m s", ".2f"),
+    "rest": lab.at("zero", SWUNG, lambda s: np.abs(about_it(spins.of_rest)(s)), "N m s", ".2f"),
+    "against": lab.of("zero", against, "%"),
     "zero": lab.of("zero", turn, "degrees", ".1f"),
     "its_own": lab.of("its_own", turn, "degrees", ".1f"),
     "no_goal": lab.of("no_goal", turn, "degrees", ".1f"),
@@ -55,8 +65,7 @@ MEASURES = {
 
 STEPS = (
     lab.Choice(
-        "The arms swing as they are told, the feet stay, and the controller asks for zero angular momentum. "
-        "What gives?",
+        "The arms swing, the feet stay, and the controller asks for zero angular momentum. What gives?",
         (
             lab.Option("Nothing: the arms cancel each other", lambda m: m["zero"] < 1.0 and m["arms"] > 80.0),
             lab.Option("The arms hardly swing", lambda m: m["arms"] <= 80.0),
@@ -64,24 +73,29 @@ STEPS = (
         ),
     ),
     lab.Number(
-        "A second robot is asked for the angular momentum that such a swing has by itself. How much of the "
+        "A second robot is asked for the angular momentum that such a swing has by itself. What part of the "
         "first one's turn does it make?",
         "left",
         0,
         150,
     ),
-    lab.Play("Watch the hips.", "zero", ("angular goal", "momenta"), beside="its_own"),
+    lab.Play(
+        "Watch the trunks, not the arms.",
+        "zero",
+        ("angular goal", "momenta"),
+        beside="its_own",
+    ),
     lab.Compare(
-        "Asked for zero, the pelvis turned by {zero}; asked for the swing's own, by {its_own}, {left} of it. A "
-        "third, asked for nothing, turned by {no_goal}. The first kept its angular momentum below {spin_zero}, "
-        "the second let it grow to {spin}.",
+        "Asked for zero, the body turned by {zero}. Asked for the swing's own, by {its_own}: {left} of it. A "
+        "third, asked for nothing, turned by {no_goal}. The first never had more than {spin_zero}, the second "
+        "up to {spin}.",
         ("zero", "its_own", "no_goal", "left"),
     ),
     lab.Explain(
-        "The arms' angular momentum is there, whatever is asked. To make the sum zero, the rest of the body "
-        "has to move just so far the other way. Ask for the swing's own, and the rest is left in peace.",
+        "The arms have angular momentum, whatever is asked. To make the sum zero, the rest of the body moves "
+        "against them: here {rest} against {arms_have}. Asked for the swing's own, it need not.",
         "zero",
-        2.25,
+        SWUNG,
         lab.Equation(
             "k = k_arms + k_rest",
             {
@@ -96,7 +110,7 @@ STEPS = (
         ),
     ),
     lab.Prose(
-        "For standing still, zero is right. A motion that has angular momentum of its own wants that as its "
+        "For standing still, zero is right. A motion with angular momentum of its own wants just that as its "
         "goal, or none."
     ),
 )
@@ -106,6 +120,7 @@ CLAIMS = (
     lab.Stands("its_own"),
     lab.Stands("no_goal"),
     lab.Bound("the arms swing", "arms", low=80.0),
+    lab.Bound("the rest moves against them", "against", low=80.0),
     lab.Bound("with a goal of zero the body turns", "zero", low=2.0),
     lab.Bound("with the swing's own goal it turns less", "left", high=50.0),
     lab.Bound("with no goal it hardly turns", "left_free", high=25.0),

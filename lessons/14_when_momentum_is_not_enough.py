@@ -1,6 +1,6 @@
 """When momentum is not enough
 
-The ground gave all it can, and the robot falls. Where must the next foot go, and what can no momentum tell?
+The ground gave all it can, and the robot falls. Where must the next foot go?
 """
 
 import numpy as np
@@ -9,6 +9,7 @@ import momentum_lab.lesson as lab
 from momentum_lab.experiments.measured import pelvis_turn, push_end, times
 from momentum_lab.lesson import quantities as q
 
+LATER = 0.3  # after the push, s
 PUSH = (lab.Push(velocity_change=0.44, duration=0.1, start=0.2),)
 RUNS = {
     "push": lab.Run("fig7", {"pushes": PUSH, "priority": 1.0, "seconds": 1.8}),
@@ -41,8 +42,9 @@ MEASURES = {
     "push": lab.of("push", q.push_force, "N"),
     "fell": lab.fate("push"),
     "now": lab.of("push", beyond(0.0), "mm"),
-    "later": lab.of("push", beyond(0.3), "mm"),
-    "growth": lab.of("push", lambda s: beyond(0.3)(s) / beyond(0.0)(s), "times", ".1f"),
+    "later": lab.of("push", beyond(LATER), "mm"),
+    "later_by": lab.of("push", lambda s: 1e3 * LATER, "ms"),
+    "growth": lab.of("push", lambda s: beyond(LATER)(s) / beyond(0.0)(s), "times", ".1f"),
     "turned": lab.of("cat", turned, "degrees", ".1f"),
     "summed": lab.of("cat", summed, "degrees", ".1f"),
     "told": lab.of("cat", lambda s: 100.0 * summed(s) / turned(s), "%"),
@@ -50,23 +52,23 @@ MEASURES = {
 
 STEPS = (
     lab.Prose(
-        "A push of {push}, the CoP at the toes, a body that does not turn: this robot is going to fall. It "
-        "would need a foot farther ahead, where the capture point is."
+        "After a push of {push}, the CoP is at the toes and the body may not turn: this robot is going to fall. "
+        "Only a foot where the capture point is could still stop it."
     ),
     lab.Number(
-        "As the push ends, the capture point is {now} in front of the toes. And three tenths of a second later?",
+        "As the push ends, the capture point is {now} in front of the toes. And {later_by} later?",
         "later",
         0,
         500,
     ),
-    lab.Play("Watch the capture point in the plot leave the feet.", "push", ("push", "priority")),
+    lab.Play("Watch the purple cross, the capture point.", "push", ("push", "priority"), view="Side"),
     lab.Compare(
-        "From {now} to {later}, {growth} as far; the robot {fell}. A step that comes late has to be long.",
+        "It went from {now} to {later}, {growth} as far, and the robot {fell}. A late step has to be a long one.",
         ("later",),
     ),
     lab.Explain(
-        "The CMP drives the capture point away, and the faster the farther it is. A foot set down beyond the "
-        "capture point brings the CMP in front of it again.",
+        "The capture point runs away from the CMP, and the farther it is, the faster. A foot set down beyond it "
+        "brings the CMP in front of it again. Omega is the rate at which a stick falls.",
         "push",
         0.4,
         lab.Equation(
@@ -78,27 +80,29 @@ STEPS = (
             since=0.31,
         ),
     ),
-    lab.Prose("One thing more. Drop the robot again, and let its legs go round as a cat's do."),
+    lab.Prose(
+        "One thing no momentum can tell. Drop the robot once more, and let its legs go round as in lesson 3."
+    ),
     lab.Choice(
-        "A controller measures the angular momentum, always, without any error. Can it tell from that how far "
-        "the body is turned in the end?",
+        "A controller measures the angular momentum all the time, without any error. Can it tell from that how "
+        "far the body has turned?",
         (
             lab.Option(
-                "Yes: it adds it up over time, as speed adds up to distance",
+                "Yes: added up over time, as speed adds up to distance",
                 lambda m: abs(m["summed"] - m["turned"]) <= 0.5 * m["turned"],
             ),
-            lab.Option("There is nothing to tell: the body is not turned", lambda m: m["turned"] < 1.0),
+            lab.Option("There is nothing to tell: the body has not turned", lambda m: m["turned"] < 1.0),
             lab.Option(
-                "No: what it adds up is not the turn",
+                "No: what is added up is not the turn",
                 lambda m: m["turned"] >= 1.0 and abs(m["summed"] - m["turned"]) > 0.5 * m["turned"],
             ),
         ),
     ),
-    lab.Play("Watch the hips, and the angular momentum in the plot.", "cat"),
+    lab.Play("Watch the hips, and the angular momentum in the plot.", "cat", view="Whole robot"),
     lab.Compare(
-        "The body is turned by {turned}. Its angular momentum, added up, makes {summed}. Linear momentum adds "
-        "up to where the CoM is. Angular momentum adds up to nothing: no angle of the body goes with it. A "
-        "controller that knows momenta alone lets the body drift, so this lab holds the pelvis upright by a "
+        "The body has turned by {turned}. Its angular momentum, added up, tells {summed}. Linear momentum, "
+        "added up, tells where the CoM is; angular momentum tells no direction that a body faces. So a "
+        "controller that knows momenta alone lets the body drift. This lab keeps the pelvis upright by a "
         "term of its own.",
         ("turned",),
     ),

@@ -91,16 +91,19 @@ class Goal:
     Attributes:
         name: of the goal.
         unit: its unit.
-        asked: what the feedback laws ask for.
+        asked: what the feedback laws ask for, with its sign.
         granted: what the bounds leave of it.
-        missing: the size of the difference; more than that of the two sizes if the direction changes.
     """
 
     name: str
     unit: str
     asked: float
     granted: float
-    missing: float
+
+    @property
+    def missing(self) -> float:
+        """What was asked for and not granted."""
+        return self.asked - self.granted
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +113,7 @@ class Bounds:
     Attributes:
         feet: the active bounds of each foot, in the robot's order.
         joints: the active bounds of joints and motors.
-        goals: rates of both momenta, and the CoP.
+        goals: rates of both momenta and the CoP, component by component.
         slacks: name, size and unit of what outputs have to do without.
     """
 
@@ -136,21 +139,33 @@ def bounds_of(sample: Sample, situation: Situation) -> Bounds:
 
 
 def goals_of(sample: Sample) -> tuple[Goal, ...]:
-    """Sizes of both momentum rates, N and N m, and the CoP seen from the middle of what carries, mm."""
-    asked, granted = sample["momentum_rate_desired"], sample["momentum_rate_admissible"]
-    rates = [
-        _sizes("linear momentum rate", "N", asked[:3], granted[:3]),
-        _sizes("angular momentum rate", "N m", asked[3:], granted[3:]),
+    """Both momentum rates, N and N m, and the CoP seen from the middle of what carries, mm, along the robot's axes.
+
+    Ahead and left are where the soles point on average, up is the vertical; a rate of angular momentum about
+    "left" turns the robot forward.
+    """
+    axes = _axes(sample)
+    rates = [sample[f"momentum_rate_{kind}"].reshape(2, 3) @ axes.T for kind in ("desired", "admissible")]
+    found = [
+        Goal(f"{name} {axis}", unit, *(float(rate[row, column]) for rate in rates))
+        for row, (name, unit) in enumerate((("linear rate,", "N"), ("angular rate about", "N m")))
+        for column, axis in enumerate(("ahead", "left", "up"))
     ]
-    turn = heading_of(sample)
-    ahead, left = (math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))
     carrying = sample["foot_wrench_measured"][:, 2] > 0.0
     middle = sample["sole_pose"][carrying if carrying.any() else slice(None), :2].mean(axis=0)
-    cops = [1e3 * (sample[name] - middle) for name in ("cop_desired", "cop_admissible")]
-    for name, axis in (("CoP ahead", ahead), ("CoP to the left", left)):
-        wanted, given = (float(cop @ axis) for cop in cops)
-        rates.append(Goal(name, "mm", wanted, given, abs(wanted - given)))
-    return tuple(rates)
+    cops = [1e3 * axes[:2, :2] @ (sample[name] - middle) for name in ("cop_desired", "cop_admissible")]
+    found += [
+        Goal(f"CoP {axis}", "mm", *(float(cop[row]) for cop in cops))
+        for row, axis in enumerate(("ahead", "left"))
+    ]
+    return tuple(found)
+
+
+def _axes(sample: Sample) -> np.ndarray:
+    """Ahead, left and up as rows of unit vectors in the world (3, 3)."""
+    turn = heading_of(sample)
+    ahead, left = (math.cos(turn), math.sin(turn), 0.0), (-math.sin(turn), math.cos(turn), 0.0)
+    return np.array([ahead, left, (0.0, 0.0, 1.0)])
 
 
 def slacks_of(sample: Sample) -> tuple[tuple[str, float, str], ...]:
@@ -250,8 +265,3 @@ def _joints(sample: Sample, situation: Situation) -> tuple[Active, ...]:
         for what, there in words
         if there[joint]
     )
-
-
-def _sizes(name: str, unit: str, asked: np.ndarray, granted: np.ndarray) -> Goal:
-    sizes = (float(np.linalg.norm(vector)) for vector in (asked, granted, asked - granted))
-    return Goal(name, unit, *sizes)

@@ -32,6 +32,7 @@ class FinishedRun:
         fall: when and why the robot has fallen; None: it has not.
         solver_failures: ticks on which the fallback torque was used.
         com_speed: of the CoM against the ground under the feet at the last sample, m/s.
+        beside: the robot beside this one, over the same time; None when there is none.
     """
 
     run: Run
@@ -43,6 +44,7 @@ class FinishedRun:
     fall: Fall | None
     solver_failures: int
     com_speed: float
+    beside: FinishedRun | None = None
 
     @classmethod
     def of(cls, session: Session) -> FinishedRun:

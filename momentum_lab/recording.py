@@ -229,20 +229,25 @@ def save_trace(recording: Recording, meta: dict[str, Any], path: Path) -> None:
     Raises:
         InputError: the file cannot be written there.
     """
-    arrays: dict[str, Any] = {name: recording.column(name) for name in recording.layout.shapes}
-    arrays["joint_names"] = np.array(recording.layout.joint_names)
-    arrays["foot_names"] = np.array(recording.layout.foot_names)
-    arrays["slack_names"] = np.array(SLACKS)
-    arrays["meta"] = np.array(json.dumps(meta, allow_nan=False))
     temporary = _beside(writable_file(path))
     try:
         with temporary.open("xb") as file:
-            np.savez_compressed(file, **arrays)
+            write_trace(recording, meta, file)
         temporary.replace(path.resolve())
     except OSError as error:
         raise _not_writable(path, error) from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def write_trace(recording: Recording, meta: dict[str, Any], file: BinaryIO) -> None:
+    """Write a recording as .npz into an open file."""
+    arrays: dict[str, Any] = {name: recording.column(name) for name in recording.layout.shapes}
+    arrays["joint_names"] = np.array(recording.layout.joint_names)
+    arrays["foot_names"] = np.array(recording.layout.foot_names)
+    arrays["slack_names"] = np.array(SLACKS)
+    arrays["meta"] = np.array(json.dumps(meta, allow_nan=False))
+    np.savez_compressed(file, **arrays)
 
 
 def write_whole(path: Path, content: bytes) -> None:

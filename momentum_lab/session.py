@@ -152,6 +152,19 @@ class Session:
         """All pushes since the robot stood up, sized; one that is held has lasted until now."""
         return self._pushed.until(self.time, self.scenario.timestep)
 
+    def pushes_after(self, events: Iterable[SessionEvent]) -> tuple[Push, ...]:
+        """All pushes there will be once some events have been done at the start of the next tick."""
+        pushed = self._pushed
+        for event in events:
+            cleared = isinstance(event, Reset)
+            pushed = Pushed() if cleared else pushed_after(pushed, event, self.robot, self.time)
+        return pushed.until(self.time, self.scenario.timestep)
+
+    @property
+    def holds(self) -> bool:
+        """Whether a push is held."""
+        return self._pushed.held is not None
+
     @property
     def motion_reach(self) -> np.ndarray:
         """How far the present motion moves each joint (na,), rad; zeros without one."""

@@ -34,7 +34,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
         fall_reason: why it counts as fallen.
         settled: not fallen, and the CoM slower than 0.02 m/s at the end.
         impulse: of all pushes until the end of the run, N s.
-        impulse_ratio: impulse of a push over what a pendulum survives with its CoP alone; the largest one.
+        impulse_ratio: horizontal impulse of a push over what a pendulum survives with its CoP alone; the largest.
         peak_com_excursion: largest horizontal distance of the CoM from its start, m.
         peak_angular_momentum: largest |k|, kg m^2/s.
         min_cop_margin: smallest distance of the CoP from the edge of the support until a fall, m; None if no
@@ -142,10 +142,10 @@ def _impulse_ratio(session: Session | FinishedRun, push: Push) -> float:
     com = recording.column("com")[row]
     poses = recording.column("sole_pose")[row]
     polygon = support_polygon(corners_in_world(session, poses)[stance].reshape(-1, 3))
-    distance = distance_to_edge(com[:2], push.direction[:2], polygon)
+    distance = distance_to_edge(com[:2], push.along, polygon)
     omega = pendulum_frequency(float(com[2] - poses[stance, 2].min()))
     bound = pendulum_impulse_bound(session.robot.mass, omega, distance, elapsed)
-    return push.delivered(session.time) / bound if bound > 0.0 else 0.0
+    return push.horizontal_part * push.delivered(session.time) / bound if bound > 0.0 else 0.0
 
 
 def _peak_com_excursion(session: Session | FinishedRun) -> float:

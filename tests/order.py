@@ -6,20 +6,34 @@ import pytest
 from xdist.scheduler import LoadFileScheduling
 
 BROWSER = "tests/browser"
+# They look at the same runs of the figures, which a process plays once (tests/experiments/played.py).
+FIGURES = tuple(
+    f"tests/experiments/test_{name}.py"
+    for name in (
+        "figures",
+        "arm_swing",
+        "felt_push",
+        *(f"fig{number}" for number in (1, 4, 5, 7, 8, 9)),
+        "flight",
+        "kick",
+        "table1",
+    )
+)
 # Those that keep a core busy for ten seconds and more, the longest first; the short ones fill the end.
 LONGEST = (
+    *FIGURES,
     "tests/experiments/test_push_limit.py",
     "tests/test_terrain.py",
     "tests/control/test_whole_body_qp.py",
     "tests/app/test_server.py",
-    "tests/control/test_switching.py",
-    "tests/control/test_slack_qp.py",
-    "tests/app/test_measured_server.py",
     "tests/test_lessons.py",
-    "tests/test_gates.py",
-    "tests/control/test_resolved_momentum.py",
     "tests/control/test_motion.py",
-    "tests/experiments/test_figures.py",
+    "tests/control/test_slack_qp.py",
+    "tests/control/test_switching.py",
+    "tests/control/test_resolved_momentum.py",
+    "tests/app/test_measured_server.py",
+    "tests/experiments/test_push_reach.py",
+    "tests/test_gates.py",
 )
 
 
@@ -42,8 +56,16 @@ def begin_first(items: list[pytest.Item]) -> None:
     items.sort(key=rank)
 
 
+def scope_of(nodeid: str) -> str:
+    """What stays in one process: a file; the figures; the browser, for two are too much for two cores."""
+    name = nodeid.split("::")[0]
+    if name.startswith(BROWSER):
+        return BROWSER
+    return FIGURES[0] if name in FIGURES else name
+
+
 class ByFile(LoadFileScheduling):
-    """Each file in one process, and all that a browser draws in one: two browsers are too much for two cores."""
+    """Each scope in one process."""
 
     def _split_scope(self, nodeid: str) -> str:
-        return BROWSER if nodeid.startswith(BROWSER) else str(super()._split_scope(nodeid))
+        return scope_of(nodeid)

@@ -39,6 +39,7 @@ from momentum_lab.run_file import Run
 from momentum_lab.scenario import Scenario, load_scenario, scenario_names
 from momentum_lab.session import Session
 from tests.app.test_figures import measurement
+from tests.test_lesson import written
 from tests.test_summary import KEYS
 
 Output = pytest.CaptureFixture[str]
@@ -561,15 +562,40 @@ def test_list_of_lessons_is_in_their_order(
     monkeypatch.setattr(listing, "LESSONS", tmp_path / "none")
     assert main(["list", "lessons", "--json"]) == 0
     assert capsys.readouterr().out == "[]\n"
-    (tmp_path / "02_push.py").write_text('"""What does a push do?\n\nMore.\n"""\n')
-    (tmp_path / "01_stand.py").write_text('"""Where is the CoP?"""\n')
+    written(tmp_path, ("Leaning in", "Last")).rename(tmp_path / "02_last.py")
+    written(tmp_path, ("You push a robot from behind. Where", "Where"))
     monkeypatch.setattr(listing, "LESSONS", tmp_path)
     assert main(["list", "lessons", "--json"]) == 0
     lessons = [
-        {"name": "01_stand", "number": 1, "title": "Where is the CoP?", "question": ""},
-        {"name": "02_push", "number": 2, "title": "What does a push do?", "question": "More."},
+        {"name": "01_leaning_in", "number": 1, "title": "Leaning in", "question": "Where does it stop?"},
+        {
+            "name": "02_last",
+            "number": 2,
+            "title": "Last",
+            "question": "You push a robot from behind. Where does it stop?",
+        },
     ]
     assert json.loads(capsys.readouterr().out) == lessons
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("STEPS = (", "STEPS = = ("), "got STEPS = = ("),
+        (("CLAIMS = (", "CLAIMED = ("), "got no CLAIMS"),
+        (('"seconds": 2.0', '"gains": {"linear_dampng": 8.0}'), "got gain linear_dampng"),
+    ],
+)
+def test_lesson_with_an_error_is_named_and_the_others_are_listed(
+    tmp_path: Path, capsys: Output, change: tuple[str, str], words: str
+) -> None:
+    written(tmp_path).rename(tmp_path / "02_sound.py")
+    path = written(tmp_path, change)
+    assert main(["list", "lessons", "--lessons", str(tmp_path), "--json"]) == 2
+    said = capsys.readouterr()
+    assert [lesson["name"] for lesson in json.loads(said.out)] == ["02_sound"]
+    (line,) = said.err.splitlines()
+    assert re.match(rf"momentum-lab: {re.escape(str(path))}:\d+: {re.escape(words)}", line)
 
 
 # app and bench

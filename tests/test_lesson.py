@@ -213,6 +213,7 @@ BROKEN = [
     ("unknown control", ('"linear_stiffness"', '"linear_stifness"'), '"linear_stifness"', "got linear_stifness"),
     ("unknown run", ('Stands("push")', 'Stands("pusch")'), '"pusch"', "got pusch; allowed: one of push"),
     ("beside itself", ('fness")', 'fness"), beside="push"'), "RUNS =", "got push; allowed: one of another run"),
+    ("unknown view", ('fness")', 'fness"), view="Top"'), '"Top"', "got Top; allowed: one of Whole robot, Feet"),
     ("unknown measure", ('"end", low', '"ent", low'), '"ent"', "got ent; allowed: one of push, way, end"),
     ("field without a measure", ("{way} and", "{weg} and"), "{weg}", "got {weg}; allowed: a measure: push, way, end"),
     ("number in the prose", ("harder and harder", "with 90 N"), "90 N", "got 90; allowed: numbers from the runs"),

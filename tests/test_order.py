@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.order import BROWSER, LONGEST, begin_first, file_of
+from tests.order import BROWSER, FIGURES, LONGEST, begin_first, file_of, scope_of
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -14,6 +14,19 @@ ROOT = Path(__file__).resolve().parent.parent
 @pytest.mark.parametrize("name", [BROWSER, *LONGEST])
 def test_what_begins_early_is_there(name: str) -> None:
     assert (ROOT / name).exists()
+
+
+def test_files_that_share_their_runs_share_a_process() -> None:
+    folder = ROOT / "tests" / "experiments"
+    sharing = {path.name for path in folder.glob("test_*.py") if "experiments.played" in path.read_text()}
+    assert {Path(name).name for name in FIGURES} == sharing
+    assert len({scope_of(f"{name}::test_it") for name in FIGURES}) == 1
+    assert (
+        scope_of("tests/browser/test_lab.py::test_it")
+        == scope_of("tests/browser/test_runs.py::test_it")
+        == BROWSER
+    )
+    assert scope_of("tests/test_order.py::test_it") == "tests/test_order.py"
 
 
 def test_none_is_lost_and_long_files_begin_before_short_ones(request: pytest.FixtureRequest) -> None:

@@ -10,6 +10,7 @@ from html import escape
 import viser
 
 from momentum_lab.active_bounds import ACTIVE, Active, Bounds, Goal, Situation, bounds_of, in_words
+from momentum_lab.app.steady import steady
 from momentum_lab.app.wire import Truth
 from momentum_lab.recording import Sample
 from momentum_lab.robot.model import RobotModel
@@ -17,11 +18,13 @@ from momentum_lab.robot.model import RobotModel
 # How often it changes on the screen, s.
 _PERIOD = 0.15
 _NONE = "–"
+# So many figures, a minus sign among them, have room in a number.
+_WHOLE = 5
 _EXPLAINED = f"(from {100 * ACTIVE:.0f} % of a limit on)"
 # Lines that are too long end in dots: what is below keeps its place.
 _CUT = 'style="white-space:nowrap;overflow:hidden;text-overflow:ellipsis"'
 _TABLE = '<table class="n" style="width:100%;border-collapse:collapse;table-layout:fixed">'
-_RIGHT = 'style="text-align:right;width:4.6em"'
+_RIGHT = 'style="text-align:right;width:4em"'
 
 
 class BoundsPanel:
@@ -80,10 +83,18 @@ def _of_foot(held: tuple[Active, ...]) -> str:
 
 
 def _goal(goal: Goal) -> str:
-    cells = "".join(f"<td {_RIGHT}>{_number(each)}</td>" for each in (goal.asked, goal.granted, goal.missing))
+    cells = "".join(f"<td {_RIGHT}>{_number(each)}</td>" for each in _whole(goal))
     return f"<tr><td {_CUT}>{escape(goal.name)} ({escape(goal.unit)})</td>{cells}</tr>"
 
 
+def _whole(goal: Goal) -> tuple[float, float, float]:
+    """Asked, granted, missing as whole numbers: what is missing is the difference of those that can be read."""
+    asked, granted = (float(round(x)) if math.isfinite(x) else x for x in (goal.asked, goal.granted))
+    return asked, granted, asked - granted
+
+
 def _number(value: float) -> str:
-    """A whole number; a dash where there is none, as for the CoP of a robot in the air."""
-    return str(round(value)).replace("-", "−") if math.isfinite(value) and abs(value) < 1e5 else _NONE
+    """A whole number with room for a sign and four figures; a dash where there is none, as for a CoP in the air."""
+    if not (math.isfinite(value) and abs(value) < 1e5):
+        return _NONE
+    return steady(value + 0.0, 0, _WHOLE).replace("-", "−")

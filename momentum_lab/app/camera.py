@@ -14,6 +14,8 @@ _NARROW = 0.62
 _COVERED = 0.62
 # From here two robots that stand side by side are seen beside each other, degrees.
 _AZIMUTH_OF_TWO = -42.0
+# Views whose name says from where: two robots are seen from there, too, degrees.
+_FIXED = (0.0, -90.0, 180.0)
 # Beside two robots there is room for one that lies on the ground, in CoM heights.
 _ROOM_TO_FALL = 0.7
 # A picture whose width over height differs by more than this has another shape.
@@ -74,6 +76,8 @@ VIEWS = {
     "Feet": View(azimuth=-62.0, elevation=32.0, low=-0.2, high=0.3, width=0.62),
     "Side": View(azimuth=-90.0, elevation=4.0, low=-0.12, high=2.05, width=1.5),
     "Front": View(azimuth=0.0, elevation=8.0, low=-0.12, high=2.05, width=1.5),
+    # Forward is up.
+    "Above": View(azimuth=180.0, elevation=78.0, low=0.3, high=1.7, width=1.5),
 }
 START_VIEW = "Whole robot"
 
@@ -193,7 +197,7 @@ def of_two(view: View, spread: np.ndarray) -> View:
         view: of one robot.
         spread: from one robot to the other (2,), in CoM heights.
     """
-    azimuth = view.azimuth if view.azimuth in (0.0, -90.0) else _AZIMUTH_OF_TWO
+    azimuth = view.azimuth if view.azimuth in _FIXED else _AZIMUTH_OF_TWO
     across = np.array([-math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))])
     return replace(view, azimuth=azimuth, width=view.width + _ROOM_TO_FALL + abs(float(across @ spread)))
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from momentum_lab.app.demo_wire import DemoEvent, LeaveScenes, ShowScene
 from momentum_lab.app.interlude import Interlude
+from momentum_lab.app.left_runs import LeftRuns
 from momentum_lab.app.lesson_runs import RunPlayback, staged
 from momentum_lab.app.lesson_wire import (
     LeaveLesson,
@@ -17,7 +18,7 @@ from momentum_lab.app.lesson_wire import (
     ShowRun,
 )
 from momentum_lab.app.playback import Playback
-from momentum_lab.app.wire import OpenRun
+from momentum_lab.app.wire import OpenRun, TakeBack
 from momentum_lab.errors import InputError, LabError
 from momentum_lab.events import Branch, Event, LookBack, Pause, Play, Reset, SetSpeed, StepOnce
 from momentum_lab.lesson import parts
@@ -41,6 +42,7 @@ class Classroom:
     def __init__(self, own: Playback) -> None:
         self._own = self.stage = own
         self._interlude = Interlude()
+        self._left = LeftRuns()
         self._lesson: parts.Lesson | None = None
         self._robot: RobotModel | None = None
         self._runs: dict[str, RunPlayback] = {}
@@ -58,7 +60,7 @@ class Classroom:
         """Whether what is on stage is a scene that nobody has asked for."""
         return self._interlude.on
 
-    def take(self, event: Event | LessonEvent | DemoEvent | OpenRun) -> None:
+    def take(self, event: Event | LessonEvent | DemoEvent | OpenRun | TakeBack) -> None:
         """Do what an event asks for, and put on stage what it is about.
 
         Raises:
@@ -71,7 +73,7 @@ class Classroom:
         if not isinstance(event, LeaveScenes):
             self._act(event)
 
-    def _act(self, event: Event | LessonEvent | OpenRun) -> None:
+    def _act(self, event: Event | LessonEvent | OpenRun | TakeBack) -> None:
         before = self.stage
         match event:
             case OpenLesson():
@@ -84,12 +86,27 @@ class Classroom:
                 self._show(label, time)
             case LeaveLesson():
                 self._leave()
+            case OpenRun(run) if before is self._own:
+                self._own = self.stage = self._left.open(before, run)
+            case TakeBack():
+                self._take_back()
             case _:
                 self._pass_on(event)
         if self.stage is not before and self.stage is not self._own:
             self.stage.speed = before.speed
             # Neighbours on stage must be told apart, and so must what they were before.
             self.stage.run = before.run + 1
+
+    @property
+    def left(self) -> tuple[str, ...]:
+        """The runs that can be taken back, in words, the last one last."""
+        return self._left.names
+
+    def _take_back(self) -> None:
+        """What was on stage before a run was opened; a lesson on stage goes first."""
+        if self.stage is not self._own:
+            raise InputError("take back", "a lesson that is open", "after it has been left")
+        self._own = self.stage = self._left.take_back(self._own)
 
     def news(self) -> LessonNews | None:
         """How far the lesson has come, if that is not what was told last."""

@@ -122,6 +122,22 @@ class Comparison:
         if panel.is_time():
             self._compare(panel)
 
+    def tried(self, foreseeing: float | None) -> str:
+        """What is known of a push that is only tried, in a sentence; empty without one.
+
+        Args:
+            foreseeing: how much of it is worked out, from 0 to 1; None when nothing is being tried.
+        """
+        if foreseeing is not None:
+            return f"Trying the push on a copy: {100.0 * foreseeing:.0f} %."
+        truth = self._truth
+        pushed = truth is not None and truth.push is not None and truth.push.start >= self._foreseen_at
+        words = [] if pushed else [path.words for path in self._paths]
+        if len(words) > 1 and truth is not None and self._other is not None:
+            names = names_of(truth, self._other)
+            words = [f"{name}: {each}" for name, each in zip(names, words, strict=True)]
+        return f"Tried, not pushed: {'. '.join(words)}." if words else ""
+
     def _draw_other(self, other: Other, first: Truth, sample: Sample, settings: ViewSettings) -> None:
         if self._loaded is None:
             return
@@ -187,6 +203,7 @@ class Comparison:
     def _show_paths(self, foreseen: tuple) -> None:
         for path in self._paths:
             path.remove()
+        self._paths = []
         loaded = self._loaded
         if loaded is not None:
             self._paths = [

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import msgspec
 
 from momentum_lab.app.chosen import chosen_in
 from momentum_lab.app.wire import Truth
 from momentum_lab.choices import CHOICES, Choices
+from momentum_lab.control.gains import values_of
 from momentum_lab.momentum.directions import text_of
 from momentum_lab.physics.push import Push
 
@@ -25,9 +26,13 @@ def choices(truth: Truth) -> dict[str, str]:
         **first,
         "friction of the ground": ", ".join(f"{value:g}" for value in dict.fromkeys(truth.friction)),
         "push": NOTHING if truth.first_push is None else push_in_words(truth.first_push),
-        **{name.replace("_", " "): f"{value:g}" for name, value in truth.gains.items()},
+        **_gains(truth.gains),
         **errors,
     }
+
+
+def _gains(values: Mapping[str, float]) -> dict[str, str]:
+    return {name.replace("_", " "): f"{value:g}" for name, value in values.items()}
 
 
 def choices_in_words(chosen: Choices) -> dict[str, str]:
@@ -47,9 +52,12 @@ def choices_in_words(chosen: Choices) -> dict[str, str]:
 
 def differences(truths: Sequence[Truth]) -> dict[str, tuple[str, ...]]:
     """The choices that are not the same in all runs: name -> one value for each."""
-    chosen = [choices(truth) for truth in truths]
-    names = dict.fromkeys(name for each in chosen for name in each)
-    values = {name: tuple(each.get(name, NOTHING) for each in chosen) for name in names}
+    return _differing([choices(truth) for truth in truths])
+
+
+def _differing(words: Sequence[dict[str, str]]) -> dict[str, tuple[str, ...]]:
+    names = dict.fromkeys(name for each in words for name in each)
+    values = {name: tuple(each.get(name, NOTHING) for each in words) for name in names}
     return {name: found for name, found in values.items() if len(set(found)) > 1}
 
 
@@ -60,7 +68,16 @@ def with_choices(truth: Truth, chosen: Truth) -> Truth:
 
 def names_of(first: Truth, second: Truth) -> tuple[str, str]:
     """What to call two robots: by the first thing in which they differ."""
-    found = differences((first, second))
+    return _names([choices(truth) for truth in (first, second)])
+
+
+def names_of_chosen(first: Choices, second: Choices) -> tuple[str, str]:
+    """What to call two robots of one run: by the first thing that was chosen otherwise for the second."""
+    return _names([{**choices_in_words(each), **_gains(values_of(each.gains))} for each in (first, second)])
+
+
+def _names(words: Sequence[dict[str, str]]) -> tuple[str, str]:
+    found = _differing(words)
     if not found:
         return "first", "second"
     name, (one, other) = next(iter(found.items()))
@@ -71,7 +88,7 @@ def names_of(first: Truth, second: Truth) -> tuple[str, str]:
 
 def push_in_words(push: Push) -> str:
     """Force, duration and direction, and what else a push says."""
-    words = f"{push.force or 0.0:.0f} N, {1e3 * push.duration:.0f} ms, {push.direction_deg:.0f}°"
+    words = f"{push.force or 0.0:.0f} N, {1e3 * push.duration:.0f} ms, {push.direction_deg:.0f}°{push.tilt}"
     if push.height is not None:
         words += f", {push.height:g} m high"
     if push.body is not None:

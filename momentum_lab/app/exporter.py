@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import multiprocessing
-import tempfile
 from collections.abc import Callable
 from multiprocessing.connection import Connection
-from pathlib import Path
 
 import msgspec
 
@@ -16,7 +15,7 @@ from momentum_lab.errors import InputError, LabError
 from momentum_lab.fall import Fall
 from momentum_lab.finished import FinishedRun
 from momentum_lab.provenance import provenance
-from momentum_lab.recording import Layout, Recording, save_trace
+from momentum_lab.recording import Layout, Recording, write_trace
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.run_file import encoded
 
@@ -82,9 +81,14 @@ def made(kind: str, taken: RunTaken) -> bytes:
     return MAKERS[kind](finished(taken))
 
 
-def finished(taken: RunTaken) -> FinishedRun:
-    """The run as summaries and figures take it."""
-    robot = RobotModel.named(taken.run.scenario.robot)
+def finished(taken: RunTaken, robot: RobotModel | None = None) -> FinishedRun:
+    """The run as summaries and figures take it.
+
+    Args:
+        taken: the run.
+        robot: its robot, if it is loaded already.
+    """
+    robot = robot or RobotModel.named(taken.run.scenario.robot)
     layout = Layout.of(robot)
     rows = rows_of(taken.rows, layout.width)
     recording = Recording(layout, max(1, len(rows)))
@@ -100,14 +104,14 @@ def finished(taken: RunTaken) -> FinishedRun:
         None if taken.fall is None else Fall(taken.fall.time, taken.fall.reason),
         taken.failures,
         taken.com_speed,
+        None if taken.other is None else finished(taken.other, robot),
     )
 
 
 def _trace(run: FinishedRun) -> bytes:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "trace.npz"
-        save_trace(run.recording, provenance(run), path)
-        return path.read_bytes()
+    file = io.BytesIO()  # a process that is stopped in the middle would leave a folder behind
+    write_trace(run.recording, provenance(run), file)
+    return file.getvalue()
 
 
 def _table(run: FinishedRun) -> bytes:

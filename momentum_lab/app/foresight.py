@@ -31,12 +31,17 @@ class Foresight:
     """
 
     def __init__(self, session: Session, waiting: Iterable[SessionEvent], push: Push) -> None:
-        self._left = round(SECONDS / session.scenario.timestep)
+        self._ticks = self._left = round(SECONDS / session.scenario.timestep)
         self._start = session.time
         self.session = fork(session, self._left + 1)
         self.session.recording.clear()
         for event in (*waiting, ApplyPush(push)):
             self.session.post(event)
+
+    @property
+    def part(self) -> float:
+        """How much of it is done, from 0 to 1."""
+        return 1.0 - self._left / self._ticks
 
     def go_on(self, ticks: int) -> bool:
         """Some ticks more; whether it has reached its end."""

@@ -26,6 +26,9 @@ class ForesightScene:
         robot: the robot.
         foreseen: what its push would do.
         root: name of the node that everything hangs below; empty: the world.
+
+    Attributes:
+        words: how it would end.
     """
 
     def __init__(
@@ -48,10 +51,14 @@ class ForesightScene:
         ]
         way = np.linalg.norm(com[:, :2] - com[0, :2], axis=1)
         furthest = com[int(np.nanargmax(way))] + np.array([0.0, 0.0, _LABEL_ABOVE * com[0, 2]])
-        words = words_of(foreseen, float(np.nanmax(way)))
+        self.words = words_of(foreseen, float(np.nanmax(way)))
         self._handles.append(
             client.scene.add_label(
-                f"{root}/foreseen/end", words, position=furthest, anchor="bottom-left", font_screen_scale=1.1
+                f"{root}/foreseen/end",
+                self.words,
+                position=furthest,
+                anchor="bottom-left",
+                font_screen_scale=1.1,
             )
         )
 
@@ -70,6 +77,8 @@ def dashes(path: np.ndarray) -> np.ndarray:
 
 def words_of(foreseen: Foreseen, way: float) -> str:
     """How it would end, and how far the CoM would go, m."""
+    if foreseen.fall is not None and foreseen.fall.time < foreseen.start:
+        return "has fallen already"
     if foreseen.fall is None:
         return f"would stand; the CoM goes {1e3 * way:.0f} mm"
     return f"would fall after {foreseen.fall.time - foreseen.start:.2f} s"

@@ -13,6 +13,7 @@ HELP = """
 | **B** | go on from the instant you look at, with other gains if you like |
 | **M** · **N** | keep this run as A · the same pushes again |
 | **G** | show or hide A |
+| **T** · **Z** | a drag pushes the robot without Shift, or no longer · let go of it without a push |
 | **1** **2** **3** **4** **5** | the tabs Push, Control, View, Runs, Share |
 | **I** · **U** | next step · previous step of a lesson (*Learn* tab, left) |
 | **X** | end the demonstration; so does any touch |
@@ -30,10 +31,12 @@ The line from the CoM to the **CMP** (▲) is parallel to the ground reaction fo
 lever with which that force turns the body: the longer it is, the faster angular momentum changes.
 
 Drag to turn the picture, right-drag to move it, scroll to come closer. **Shift + drag** on the robot pulls it
-there: the arrow shows the force, letting go pushes (*pulse*) or ends the push (*hold*, in the Push tab).
+there: the arrow shows the force, letting go pushes (*pulse*) or ends the push (*hold*, in the Push tab). Go back to
+where you began, or press **Z**, and nobody is pushed. With a finger, or a hand that has no Shift, switch on *drag
+pushes the robot* in the Push tab (**T**). *pulls* there lets your hand move up and sideways, not over the ground.
 
 **Without a mouse.** Tab and Shift+Tab go from widget to widget, arrows move a slider, Home and End take it to its
-ends. Once the picture has the focus, W, A, S, D, Q and E move the camera; the View tab has four fixed views.
+ends. Once the picture has the focus, W, A, S, D, Q and E move the camera; the View tab has five fixed views.
 
 **With a screen reader.** Sliders say their name, value and unit; the status is read out when it changes. The 3D
 picture and the plots have a name but cannot be read: the status, the Runs table and `momentum-lab run --json` have

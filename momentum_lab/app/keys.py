@@ -9,6 +9,8 @@ from typing import Any
 
 import viser
 
+from momentum_lab.app.hand import Hand
+from momentum_lab.app.hand_panel import MODIFIER
 from momentum_lab.app.help_page import HELP
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.runs_panel import RunsPanel
@@ -29,6 +31,7 @@ def add_keys(
     status: StatusBar,
     tabs: Tabs,
     runs: RunsPanel,
+    hand: Hand,
 ) -> None:
     """Give a browser tab its keys; all of them are in the command palette too."""
     keys: tuple[tuple[str, Any, Callable[[], None]], ...] = (
@@ -41,6 +44,8 @@ def add_keys(
         ("Step 1 ms", "J", lambda: post(StepOnce(SMALL_STEP))),
         ("Step 20 ms", "L", lambda: post(StepOnce(LARGE_STEP))),
         ("Go on from the instant that is looked at", "B", lambda: post(Branch())),
+        ("Drag pushes the robot, without Shift", "T", hand.toggle),
+        ("Let go without a push", "Z", hand.give_up),
         ("Keep this run as A", "M", runs.keep),
         ("Same pushes again", "N", runs.run_again),
         ("Show or hide A", "G", runs.toggle_ghost),
@@ -52,6 +57,9 @@ def add_keys(
     )
     for label, hotkey, act in keys:
         client.gui.add_command(label, hotkey=hotkey).on_trigger(_triggered(act))
+    # Whoever pulls may be holding Shift.
+    give_up = client.gui.add_command("Let go without a push, with Shift", hotkey="Z", modifier=MODIFIER)
+    give_up.on_trigger(_triggered(hand.give_up))
 
 
 def _triggered(act: Callable[[], None]) -> Callable[[Any], None]:

@@ -9,6 +9,7 @@ from typing import Any
 import viser
 
 from momentum_lab.app import learn_html
+from momentum_lab.app.learn_style import WAY
 from momentum_lab.app.walk import Walk
 
 _BACK, _LEAVE = "Back  (U)", "Leave the lesson"
@@ -39,7 +40,8 @@ class LearnFrame:
         self._body: viser.GuiFormHandle | None = None
         with tab:
             self._heading = self._gui.add_html("", order=1.0, visible=False)
-            self._forward = self._gui.add_button(_NEXT, color=_BLUE, order=4.0, visible=False)
+            self._way = self._gui.add_html(WAY, order=4.0, visible=False)
+            self._forward = self._gui.add_button(_NEXT, color=_BLUE, order=4.5, visible=False)
             self._others = self._gui.add_button_group(" ", (_BACK, _LEAVE), order=5.0, visible=False)
         self._forward.on_click(lambda _: forward())
         self._others.on_click(lambda event: back() if event.target.value == _BACK else leave())
@@ -55,7 +57,7 @@ class LearnFrame:
 
     def show(self, walk: Walk | None) -> None:
         """Show what is around a step, with the buttons that make sense; nothing without a lesson."""
-        for handle in (self._heading, self._forward, self._others):
+        for handle in (self._heading, self._way, self._forward, self._others):
             handle.visible = walk is not None
         if walk is not None:
             self._forward.label, self._forward.disabled = _way_on(walk), walk.waits

@@ -5,54 +5,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 
-from momentum_lab.app.html import COLORS
+from momentum_lab.app.learn_style import BLUE, GREEN, LIST, RED, STYLE
 from momentum_lab.lesson.equation import symbol_mathml
 from momentum_lab.lesson.record import EquationRecord, StepRecord
 
 LETTERS = "ABCDEFGH"
-LIST = '<span class="learn-list"></span>'
-"""Buttons after it look like a list."""
 # A number that is no further from the measured one than this part of what could be predicted is close.
 CLOSE = 0.1
-_BLUE, _GREEN, _RED = "#0072b2", COLORS["green"], COLORS["vermillion"]
-_DARK_PAGE = "[data-mantine-color-scheme=dark]"
-_DARK = f"{_DARK_PAGE} .learn"
-_STYLE = (
-    "<style>.learn{padding:.15em .9em .5em .9em;font-size:.95em;line-height:1.45}"
-    ".learn h3{font-size:1.05em;margin:.1em 0 .25em 0;font-weight:650}"
-    ".learn .q{font-size:1.02em;font-weight:550;color:#0b4f79}.learn .dim{color:#6b6b6b;font-size:.88em}"
-    ".learn .o{display:flex;gap:.6em;padding:.32em .5em;margin:.2em 0;border-radius:.35em;"
-    "border:1px solid #d5dbe0}.learn .o b{flex:none;width:1em}"
-    f".learn .o.mine{{border-color:{_BLUE};background:#e8f3fa}}"
-    ".learn .bar{height:.3em;background:#e3e7ea;margin:.15em 0 .45em 0}"
-    f".learn .bar div{{height:100%;background:{_BLUE}}}"
-    ".learn .card{border-left:.3em solid;padding:.3em .6em;margin:.4em 0;background:#f6f7f8}"
-    ".learn .eq{overflow-x:auto;padding:.5em 0;text-align:center}"
-    ".learn math{font-size:1.15em}.learn mtext{font-size:.68em;color:#0b4f79}"
-    ".learn td{padding:0 .6em .1em 0;vertical-align:top}.learn .n{font-variant-numeric:tabular-nums}"
-    ".learn .err{border:1px solid;border-radius:.35em;padding:.5em .6em;overflow-wrap:anywhere}"
-    # What is chosen from is a list with whole sentences in it, not a row of buttons.
-    "div:has(>.learn-list)~* button{height:auto!important;min-height:2.1em;background:#f6f8f9!important;"
-    "color:#1f2a33!important;border:1px solid #d5dbe0!important}"
-    "div:has(>.learn-list)~* button:disabled{color:#6b6b6b!important}"
-    "div:has(>.learn-list)~* button:hover:not(:disabled){border-color:#0072b2!important}"
-    "div:has(>.learn-list)~* .mantine-Button-inner{justify-content:flex-start}"
-    "div:has(>.learn-list)~* .mantine-Button-label{white-space:normal;text-align:left;height:auto;"
-    "overflow:visible;padding:.3em .2em;line-height:1.3;font-weight:450;font-size:1.08em}"
-    f"{_DARK} .q,{_DARK} mtext{{color:#7cc4f0}}{_DARK} .dim{{color:#a6a6a6}}"
-    f"{_DARK} .o{{border-color:#4a5057}}{_DARK} .o.mine{{background:#16384d}}"
-    f"{_DARK} .bar{{background:#3a3f45}}{_DARK} .card{{background:#2b2f34}}"
-    f"{_DARK_PAGE} div:has(>.learn-list)~* button{{background:#2b2f34!important;color:#e4e7ea!important;"
-    f"border-color:#4a5057!important}}{_DARK_PAGE} div:has(>.learn-list)~* button:disabled"
-    "{color:#a6a6a6!important}</style>"
+# Whoever opens a step begins at its beginning, wherever the step before was left.
+_TO_THE_TOP = (
+    '<img alt="" src="data:," style="display:none" '
+    "onerror=\"this.closest('.mantine-ScrollArea-viewport')?.scrollTo(0,0)\">"
 )
 
 
-def welcome(done: int, count: int) -> str:
-    """What stands above the list of lessons."""
-    return f"{_STYLE}{LIST}" + _box(
+def welcome(done: int, count: int, broken: int) -> str:
+    """What stands above the list of lessons: how many are done, and how many cannot be opened."""
+    faulty = f' <span style="color:{RED}">✖ {broken} cannot be opened.</span>' if broken else ""
+    return f"{STYLE}{LIST}" + _box(
         "<h3>Learn</h3>Each lesson asks a question: say what you expect, then watch, then compare. "
-        f'<span class="dim">{done} of {count} done.</span>'
+        f'<span class="dim">{done} of {count} done.</span>{faulty}'
     )
 
 
@@ -60,19 +32,20 @@ def heading(number: int, title: str, question: str, place: int, count: int) -> s
     """Title and question of the lesson, and where in it one is."""
     bar = f'<div class="bar"><div style="width:{100.0 * (place + 1) / count:.0f}%"></div></div>'
     where = f'<span class="dim">Lesson {number} · step {place + 1} of {count}</span>{bar}'
-    return _box(f'{_STYLE}{where}<h3>{escape(title)}</h3><div class="q">{escape(question)}</div>')
+    return _box(f'{STYLE}{_TO_THE_TOP}{where}<h3>{escape(title)}</h3><div class="q">{escape(question)}</div>')
 
 
 def waiting(title: str) -> str:
     """While a lesson is being prepared."""
-    return _box(f"{_STYLE}<h3>{escape(title)}</h3>The lesson's runs are being prepared …")
+    return _box(f"{STYLE}{_TO_THE_TOP}<h3>{escape(title)}</h3>The lesson's runs are being prepared …")
 
 
 def error(words: str) -> str:
     """What is wrong with a lesson."""
     return _box(
-        f'{_STYLE}<div class="err" style="color:{_RED}" role="alert"><b>✖ This lesson has an error.</b><br>'
-        f'{escape(words)}</div><span class="dim">The lab goes on without it.</span>'
+        f'{STYLE}{_TO_THE_TOP}<div class="err" style="color:{RED}" role="alert">'
+        f"<b>✖ This lesson has an error.</b><br>{escape(words)}</div>"
+        '<span class="dim">The lab goes on without it.</span>'
     )
 
 
@@ -84,7 +57,7 @@ def text(words: str) -> str:
 def claims(failed: Sequence[str]) -> str:
     """Claims that do not hold on this robot."""
     items = "<br>".join(escape(words) for words in failed)
-    return _box(f'<div class="err" style="color:{_RED}"><b>✖ Not true here:</b><br>{items}</div>')
+    return _box(f'<div class="err" style="color:{RED}"><b>✖ Not true here:</b><br>{items}</div>')
 
 
 def said(step: StepRecord, mine: float | None) -> str:
@@ -149,29 +122,29 @@ def _box(inner: str) -> str:
 
 
 def _yours() -> str:
-    return f' <span style="color:{_BLUE};white-space:nowrap">← your prediction</span>'
+    return f' <span style="color:{BLUE};white-space:nowrap">← your prediction</span>'
 
 
 def _compared_choice(step: StepRecord, mine: int | None) -> str:
     right = " / ".join(f"{LETTERS[place]} {step.options[place]}" for place in step.right)
     if mine is None or not 0 <= mine < len(step.options):
-        return _card(_BLUE, step.text, f"Measured: <b>{escape(right)}</b>")
+        return _card(BLUE, step.text, f"Measured: <b>{escape(right)}</b>")
     if mine in step.right:
-        return _card(_GREEN, step.text, f"<b>✔ As you predicted:</b> {escape(right)}")
+        return _card(GREEN, step.text, f"<b>✔ As you predicted:</b> {escape(right)}")
     yours = f"{LETTERS[mine]} {step.options[mine]}"
     lines = f"<b>✖ Otherwise.</b> You: {escape(yours)}<br>Measured: <b>{escape(right)}</b>"
-    return _card(_RED, step.text, lines)
+    return _card(RED, step.text, lines)
 
 
 def _compared_number(step: StepRecord, mine: float | None) -> str:
     found = f"Measured: <b>{_number(step.measured, step)}</b>"
     if mine is None:
-        return _card(_BLUE, step.text, found)
+        return _card(BLUE, step.text, found)
     off = abs(mine - step.measured)
     close = off <= CLOSE * (step.high - step.low)
     verdict = "<b>✔ Close.</b>" if close else f"<b>✖ Off by {_number(off, step)}.</b>"
     lines = f"{verdict} You: {_number(mine, step)} · {found}{_line(step, mine)}"
-    return _card(_GREEN if close else _RED, step.text, lines)
+    return _card(GREEN if close else RED, step.text, lines)
 
 
 def _line(step: StepRecord, mine: float) -> str:
@@ -183,7 +156,7 @@ def _line(step: StepRecord, mine: float) -> str:
     return (
         '<svg width="100%" viewBox="0 0 300 34" role="img" aria-label="prediction and measurement on a line">'
         '<path d="M10 14H290" stroke="#9aa3ab" stroke-width="2"/>'
-        f'<circle cx="{yours:.0f}" cy="14" r="6" fill="#fff" stroke="{_BLUE}" stroke-width="2.5"/>'
+        f'<circle cx="{yours:.0f}" cy="14" r="6" fill="#fff" stroke="{BLUE}" stroke-width="2.5"/>'
         f'<path d="M{found:.0f} 6l7 8-7 8-7-8z" fill="#222"/>'
         f'<text x="10" y="32" font-size="10" fill="#6b6b6b">{step.low:g}</text>'
         f'<text x="290" y="32" font-size="10" fill="#6b6b6b" text-anchor="end">{step.high:g}</text>'

@@ -23,7 +23,8 @@ def list_page(
         choose: told the one that a person wants.
     """
     done = sum(store.get(entry.key).done for entry in entries)
-    gui.add_html(learn_html.welcome(done, len(entries)))
+    broken = sum(bool(entry.error) for entry in entries)
+    gui.add_html(learn_html.welcome(done, len(entries), broken))
     for entry in entries:
         _add_entry(gui, entry, store.get(entry.key), choose)
 
@@ -53,6 +54,6 @@ def _add_entry(gui: viser.GuiApi, entry: Entry, progress: Progress, choose: Call
         icon = viser.Icon.CIRCLE_CHECK
     elif progress.step or progress.answers:
         icon = viser.Icon.PROGRESS
-    title = f"{entry.number}. {entry.title}"
+    title = f"{entry.number}. {entry.title}" + (" · has an error" if entry.error else "")
     button = gui.add_button(title, color="gray", icon=icon, hint=entry.error or entry.question)
     button.on_click(lambda _: choose(entry))

@@ -12,6 +12,7 @@ import viser
 
 from momentum_lab.app import learn_html
 from momentum_lab.app.learn_controls import TryOut
+from momentum_lab.app.learn_style import LIST
 from momentum_lab.app.lesson_wire import LessonEvent, PlayRun
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.walk import Walk
@@ -23,6 +24,8 @@ from momentum_lab.lesson.record import EquationRecord
 # How often an equation's numbers change, s.
 _PERIOD = 0.1
 _BLUE = (0, 114, 178)
+Answer = Callable[[int, Callable[[], float]], None]
+"""Takes a prediction: of which step, and how it is read, so that of two quick changes the last one counts."""
 _OPEN, _CHOSEN = viser.Icon.CIRCLE, viser.Icon.CIRCLE_DOT
 
 
@@ -41,7 +44,7 @@ class Desk:
     gui: viser.GuiApi
     post: Post
     ask: Callable[[LessonEvent], None]
-    answer: Callable[[float], None]
+    answer: Answer
     now: Callable[[], tuple[LoadedRobot, Truth]]
 
 
@@ -78,7 +81,7 @@ class ChoicePage(Page):
     def _build(self) -> None:
         super()._build()
         gui, self._place = self._desk.gui, self._walk.place
-        gui.add_html(learn_html.LIST)
+        gui.add_html(LIST)
         self._buttons = [self._option(gui, place, words) for place, words in enumerate(self._step.options)]
         self.refresh()
 
@@ -91,7 +94,7 @@ class ChoicePage(Page):
 
     def _option(self, gui: viser.GuiApi, place: int, words: str) -> viser.GuiButtonHandle:
         button = gui.add_button(f"{learn_html.LETTERS[place]}  {words}", color="gray", icon=_OPEN)
-        button.on_click(lambda _: self._desk.answer(float(place)))
+        button.on_click(lambda _: self._desk.answer(self._place, lambda: float(place)))
         return button
 
 
@@ -107,13 +110,14 @@ class NumberPage(Page):
         start = self._walk.answers.get(self._place, middle)
         self._slider: Any = gui.add_slider(f"I predict{unit}", step.low, step.high, width, start)
         self._button = gui.add_button("That is my prediction", color=_BLUE, icon=viser.Icon.CHECK)
-        self._button.on_click(lambda _: self._take())
+        # What is typed or slid is the prediction at once; the button is for a learner whom the middle suits.
+        self._button.on_click(lambda _: self._desk.answer(self._place, self._value))
+        self._slider.on_update(lambda _: self._desk.answer(self._place, self._value))
         self.refresh()
 
-    def _take(self) -> None:
-        value = float(self._slider.value)
-        if math.isfinite(value):
-            self._desk.answer(min(max(value, self._step.low), self._step.high))
+    def _value(self) -> float:
+        """What the slider says; not a number if it says nothing that can be predicted."""
+        return min(max(float(self._slider.value), self._step.low), self._step.high)
 
     def refresh(self) -> None:
         """Show what has changed in the way through the lesson."""
@@ -141,7 +145,7 @@ class PlayPage(Page):
         if text != self._runs.content:
             self._runs.content = text
         label = self._next()
-        words = "Play" if label not in seen else "Play again"
+        words = "Play the run" if label not in seen else "Play it again"
         words += f": {learn_html.spoken(label)}" if len(self._labels) > 1 else ""
         if words != self._button.label:
             self._button.label = words

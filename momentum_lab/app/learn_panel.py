@@ -11,6 +11,7 @@ from typing import Any
 
 import viser
 
+from momentum_lab.app.camera import START_VIEW
 from momentum_lab.app.learn_frame import LearnFrame
 from momentum_lab.app.learn_list import error_page, list_page, waiting_page
 from momentum_lab.app.learn_player import LessonPlayer
@@ -34,6 +35,7 @@ class LearnPanel:
         post: where a hand's events go.
         ask: where a lesson's events go.
         tell: shows a person what was wrong.
+        look: turns the camera to a named view.
         opened: told whether a lesson is open.
         truth: what is the case at the start.
     """
@@ -46,11 +48,13 @@ class LearnPanel:
         post: Post,
         ask: Callable[[LessonEvent], None],
         tell: Callable[[str], None],
+        look: Callable[[str], None],
         opened: Callable[[bool], None],
         truth: Truth,
     ) -> None:
         self._gui, self._library = client.gui, library
         self._post, self._ask, self._tell, self._opened = post, ask, tell, opened
+        self._look = look
         self._store = ProgressStore(client)
         self._lock = threading.RLock()
         self._robot: LoadedRobot | None = None
@@ -109,10 +113,18 @@ class LearnPanel:
             self._show_list()
         else:
             threading.Thread(target=self._open, args=(entry,), name="first lesson", daemon=True).start()
+        threading.Thread(target=self._look_through, args=(entries,), name="faults", daemon=True).start()
         known = self._store.load([one.key for one in entries])
         self._remembered.set()
         with self._lock:
             if known and self._entry is None and not self._closed:
+                self._show_list()
+
+    def _look_through(self, shown: list[Entry]) -> None:
+        """Mark the lessons that turn out to have an error."""
+        found = self._library.look_through()
+        with self._lock:
+            if found != shown and self._entry is None and not self._closed:
                 self._show_list()
 
     def _show_list(self) -> None:
@@ -150,6 +162,7 @@ class LearnPanel:
                 self._gui,
                 self._post,
                 self._ask,
+                self._look,
                 self._answer,
                 self._now,
             )
@@ -172,6 +185,8 @@ class LearnPanel:
     def _put_away(self) -> None:
         """Give back what was before the lesson."""
         if self._player is not None:
+            if self._player.turns:
+                self._look(START_VIEW)
             self._player = None
             self._ask(LeaveLesson())
             self._opened(False)
@@ -184,10 +199,10 @@ class LearnPanel:
         assert self._robot is not None
         return self._robot, self._truth
 
-    def _answer(self, value: float) -> None:
+    def _answer(self, place: int, read: Callable[[], float]) -> None:
         with self._lock:
             if self._player is not None:
-                self._player.answer(value)
+                self._player.answer(place, read())
 
     def _next(self) -> None:
         with self._lock:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import viser
 
 from momentum_lab.app import learn_html
 from momentum_lab.app.learn_frame import LearnFrame
-from momentum_lab.app.learn_pages import PAGES, Desk, Page
+from momentum_lab.app.learn_pages import PAGES, Answer, Desk, Page
 from momentum_lab.app.lesson_wire import LessonEvent, LessonNews, OfferRun, ShowRun
 from momentum_lab.app.progress import Progress, ProgressStore
 from momentum_lab.app.robots import LoadedRobot
@@ -31,6 +32,7 @@ class LessonPlayer:
         gui: where widgets go.
         post: where a hand's events go.
         ask: where a lesson's events go.
+        look: turns the camera to a named view.
         answer: what takes a prediction.
         now: who plays, and what is the case.
     """
@@ -44,16 +46,22 @@ class LessonPlayer:
         gui: viser.GuiApi,
         post: Post,
         ask: Callable[[LessonEvent], None],
-        answer: Callable[[float], None],
+        look: Callable[[str], None],
+        answer: Answer,
         now: Callable[[], tuple[LoadedRobot, Truth]],
     ) -> None:
-        self._key, self._store, self._frame, self._ask = key, store, frame, ask
+        self._key, self._store, self._frame, self._ask, self._look = key, store, frame, ask, look
         self._desk = Desk(gui, post, ask, answer, now)
         saved = store.get(key)
         asked = {place: value for place, value in saved.answers.items() if place < len(record.steps)}
         self._walk = Walk(record, 0, {} if saved.done else asked)
         self._first = saved.step if saved.step < len(record.steps) and not saved.done else 0
         self._page: Page | None = None
+
+    @property
+    def turns(self) -> bool:
+        """Whether the lesson turns the camera."""
+        return any(step.view for step in self._walk.rehearsed.steps)
 
     def start(self) -> None:
         """Open the step at which it was left."""
@@ -68,10 +76,10 @@ class LessonPlayer:
         """Push as the open step says; False if it does not."""
         return self._page is not None and self._page.push()
 
-    def answer(self, value: float) -> None:
-        """Take a prediction, unless it comes too late."""
+    def answer(self, place: int, value: float) -> None:
+        """Take a prediction of a step, unless it comes too late or is no number."""
         walk, page = self._walk, self._page
-        if page is None or walk.frozen:
+        if page is None or place != walk.place or walk.frozen or not math.isfinite(value):
             return
         walk.answers[walk.place] = value
         page.refresh()
@@ -118,6 +126,8 @@ class LessonPlayer:
 
     def _stage(self, walk: Walk) -> None:
         step, seen = walk.step, walk.news.seen
+        if step.view:
+            self._look(step.view)
         if step.kind == "explain":
             self._ask(ShowRun(step.run, step.time))
         elif step.kind == "play" and step.run not in seen:

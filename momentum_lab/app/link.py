@@ -23,6 +23,7 @@ from momentum_lab.app.wire import (
     OpenRun,
     RunTaken,
     RunWanted,
+    TakeBack,
     packed,
     unpacked_answer,
 )
@@ -87,6 +88,10 @@ class Link:
             raise InputError("robot", run.scenario.robot, f"one of {', '.join(self._robots)}")
         self._scenarios.add(run.scenario.name)
         self._send(packed(OpenRun(run)))
+
+    def take_back(self) -> None:
+        """Put the run on stage again that was there before another was opened."""
+        self._send(packed(TakeBack()))
 
     def take_run(self, recording: bool, patience: float = _LONG_PATIENCE) -> RunTaken:
         """The run as it is now; somebody has to read frames meanwhile.

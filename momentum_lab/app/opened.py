@@ -22,6 +22,11 @@ class OpenedRun:
         self._over = False
         self._agrees: bool | None = None
 
+    @property
+    def events(self) -> tuple[LoggedEvent, ...]:
+        """All that is done in it, at its ticks."""
+        return self._run.events
+
     def due(self, session: Session) -> list[SessionEvent]:
         """What was done at the tick that is about to begin."""
         return self._script.at(session.ticks)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import viser
 
-from momentum_lab.app import access_html, html, keyboard_html, look_html, share_html
+from momentum_lab.app import access_html, html, keyboard_html, look_html, share_html, typed_html
 from momentum_lab.app.appearance import Appearance, dress
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.demo_panel import DemoPanel
@@ -17,12 +17,14 @@ from momentum_lab.app.ground_panel import GroundPanel
 from momentum_lab.app.hand import Hand
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.learn_panel import LearnPanel
+from momentum_lab.app.learn_style import ON_A_PHONE
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
 from momentum_lab.app.mismatch_panel import MismatchPanel
 from momentum_lab.app.page_plan import LEFT, RIGHT, PagePlan
 from momentum_lab.app.plots import Plots
+from momentum_lab.app.pulling import Pulling
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.runs_panel import RunsPanel
@@ -92,7 +94,8 @@ class Panels:
         with group.add_tab("Push"):
             self.push = PushPanel(gui, post, tell, redraw)
             SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
-            self.hand = Hand(client, self.push, self.settings, post, tell, lambda: sharing.take(False).pushes)
+            pulling = Pulling(client, self.push, self.settings, post, lambda: sharing.take(False).pushes)
+            self.hand = Hand(self.push.hand, pulling, tell)
             self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control"):
             self.control = ControlPanel(gui, post, tell, choices, truth)
@@ -107,17 +110,17 @@ class Panels:
             self.share = SharePanel(gui, sharing, address)
         demo.furnish()
         appearance.add_ear(gui)
-        gui.add_html(access_html.NAMES)
-        gui.add_html(look_html.STYLE)
+        gui.add_html(access_html.NAMES + typed_html.TYPED + look_html.STYLE + ON_A_PHONE)
         gui.add_html(keyboard_html.KEYS)
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         left = gui.add_panel()
-        # The browser opens the first tab.
+        # The browser opens the first tab; a phone has no room for plots beside the picture.
+        learn_first = lesson is not None or not plan.roomy
         tabs = [
             left.add_tab(label, icon)
-            for label, icon in ((_PLOTS, _LEARN) if lesson is None else (_LEARN, _PLOTS))
+            for label, icon in ((_LEARN, _PLOTS) if learn_first else (_PLOTS, _LEARN))
         ]
-        learn_tab, plots_tab = tabs if lesson is not None else tabs[::-1]
+        learn_tab, plots_tab = tabs if learn_first else tabs[::-1]
         with plots_tab:
             gui.add_html(_legend())
             self.plots = self._usual_plots = Plots(gui)
@@ -132,8 +135,8 @@ class Panels:
 
         self._gui, self._group, self._roomy = gui, group, plan.roomy
         # The list of commands has them in this order: what is used most comes first.
-        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs)
-        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, self._lesson_opened, truth)
+        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
+        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
         self.learn.start(lesson)
         demo.listen()
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import msgspec
+
+from momentum_lab.app.beginnings import forgotten, is_handled
 from momentum_lab.app.companion import Companion
 from momentum_lab.app.foresight import Foresight
 from momentum_lab.app.opened import NOTHING_OPENED, OpenedRun
@@ -17,6 +20,7 @@ from momentum_lab.events import (
     Event,
     Foresee,
     HoldPush,
+    LetGo,
     LoadScenario,
     LookBack,
     MoveGround,
@@ -151,11 +155,22 @@ class Playback:
             behind=self._behind * self.session.scenario.timestep,
         )
         opened = self._opened.told(self.session)
-        return truth_of(self.session, self._waiting, self.shown, clock, self._difference, opened)
+        return truth_of(
+            self.session, self._waiting, self.shown, clock, self._difference, opened, self._forgotten()
+        )
+
+    def _forgotten(self) -> tuple[float, ...]:
+        """When a hand has pushed that would not push again after going on from what is looked at, s."""
+        tick = self.session.ticks - self._behind - 1
+        return forgotten(self.session, tick, self._opened.events) if self._behind else ()
 
     def taken(self, recording: bool) -> RunTaken:
-        """The run as it is now, with its samples or without; a robot beside the first is in its scenario."""
-        return taken_of(self.session, self._waiting, self._difference, recording)
+        """The run as it is now, with the samples of both robots or without; the second is in its scenario."""
+        taken = taken_of(self.session, self._waiting, self._difference, recording)
+        if self.beside is None or not recording:
+            return taken
+        other = taken_of(self.beside.session, self.beside.waiting, None, recording)
+        return msgspec.structs.replace(taken, other=other)
 
     @property
     def _difference(self) -> Beside | None:
@@ -179,6 +194,11 @@ class Playback:
         answers = tuple(foresight.answer() for foresight in self.foresights)
         self.foresights = ()
         return answers
+
+    @property
+    def foreseen_part(self) -> float | None:
+        """How much of what is being foreseen is done, from 0 to 1; None when nothing is."""
+        return min((foresight.part for foresight in self.foresights), default=None)
 
     def _look_back(self, ticks: int) -> None:
         """Look at an earlier sample, the oldest that there is if that is too far."""
@@ -204,6 +224,8 @@ class Playback:
         self._waiting.clear()
         for event in self.session.choices_after(self._waiting).until(chosen):
             self._pass_on(event)
+        if self.session.holds and not is_handled(self._opened.coming(self.session)):
+            self._post(LetGo())  # whoever held it has let go in what is forgotten
         self.tick(1)
 
     def _cue(self) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from momentum_lab.app import html
+from momentum_lab.app import cursor, html
 from momentum_lab.app.marks import STYLES
 from momentum_lab.app.second_curves import POINTS, curves_at
 from momentum_lab.app.series import WINDOW, Curves, History
@@ -51,7 +51,7 @@ class Plots:
         self._next = self._next_rest = -math.inf
         self._history: History | None = None
         self._direction = np.array([1.0, 0.0])
-        self._until = math.inf
+        self._looked_at = math.inf
         self._kept: History | None = None
         self._beside: History | None = None
         self.ahead = 0.0
@@ -148,10 +148,10 @@ class Plots:
         """Show what happens along a direction (2,) from now on, the past included."""
         self._direction = direction
 
-    def look_at(self, until: float) -> None:
-        """Let the window end at a time from now on, s; infinity: where the run ends."""
-        if until != self._until:
-            self._until = until
+    def look_at(self, time: float) -> None:
+        """Mark a time from now on and show what was around it, s; infinity: let the window end with the run."""
+        if time != self._looked_at:
+            self._looked_at = time
             self.draw()
 
     def add(self, rows: np.ndarray) -> None:
@@ -159,7 +159,7 @@ class Plots:
         if self._history is not None:
             self._history.add(rows)
             if self._clock() >= self._next and len(self._history):
-                curves = self._history.curves(self._direction, self._until)
+                curves = self._history.curves(self._direction, cursor.end_around(self._looked_at))
                 self._next = self._clock() + _PERIOD
                 if self._clock() >= self._next_rest or not (at_rest(curves) and self._other_rests()):
                     self._draw(curves)
@@ -167,13 +167,17 @@ class Plots:
     def _other_rests(self) -> bool:
         """Whether nothing changes in the curves of a robot beside the first."""
         beside = self._beside
-        return beside is None or not len(beside) or at_rest(beside.curves(self._direction, self._until))
+        return (
+            beside is None
+            or not len(beside)
+            or at_rest(beside.curves(self._direction, cursor.end_around(self._looked_at)))
+        )
 
     def draw(self) -> None:
         """Draw what there is."""
         if self._history is not None and len(self._history):
             self._next = self._clock() + _PERIOD
-            self._draw(self._history.curves(self._direction, self._until))
+            self._draw(self._history.curves(self._direction, cursor.end_around(self._looked_at)))
 
     def _draw(self, curves: Curves) -> None:
         self._next_rest = self._clock() + _RESTING
@@ -191,8 +195,9 @@ class Plots:
         beside: list[list[np.ndarray]] = [[], [], [], []]
         if self._beside is not None:
             beside = curves_at(self._beside, self._direction, curves.time)
+        line = _framed(cursor.cursor_line(curves.time, self._looked_at))
         for plot, first, dashed, thin in zip(self._plots, own, kept, beside, strict=True):
-            plot.data = (x, *first, *map(_framed, dashed), pushed, *map(_framed, thin))
+            plot.data = (x, *first, *map(_framed, dashed), line, pushed, *map(_framed, thin))
 
 
 def at_rest(curves: Curves) -> bool:
@@ -278,8 +283,8 @@ def _plot(
     nothing = np.zeros(2)
     limit = {"pad": 0.08, "mode": 1}
     return gui.add_uplot(
-        (np.array([0.0, WINDOW]), *(nothing for _ in lines), nothing),
-        ({}, *lines, push),  # type: ignore[arg-type]
+        (np.array([0.0, WINDOW]), *(nothing for _ in lines), nothing, nothing),
+        ({}, *lines, cursor.SERIES, push),  # type: ignore[arg-type]
         bands=bands,
         scales={
             "x": {"time": False},

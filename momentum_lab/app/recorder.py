@@ -10,7 +10,15 @@ import numpy as np
 import viser
 from viser.infra import StateSerializer
 
-from momentum_lab.app.camera import FIELD_OF_VIEW, START_VIEW, USUAL, VIEWS, camera_pose, wide_enough
+from momentum_lab.app.camera import (
+    FIELD_OF_VIEW,
+    START_VIEW,
+    USUAL,
+    VIEWS,
+    camera_pose,
+    of_two,
+    wide_enough,
+)
 from momentum_lab.app.profile import NORMAL, RenderProfile
 from momentum_lab.app.quiet import quiet
 from momentum_lab.app.reel import Reel
@@ -76,9 +84,10 @@ def _recorded(reel: Reel, report: Report, profile: RenderProfile) -> Iterator[St
         add_floor(server, float(reel.ground.floor.origin[2]), "light")
         _look(server, reel)
         scene = ReelScene(server, reel, ViewSettings())
-        for i, sample in enumerate(reel.samples):
-            scene.draw(sample)
-            serializer.insert_sleep(reel.step)
+        for i in range(len(reel.rows)):
+            scene.draw(i)
+            # The player's clock adds these up: so every picture comes at the nearest number to its own time.
+            serializer.insert_sleep(reel.time(i + 1) - reel.time(i))
             report((i + 1) / len(reel.rows))
         yield serializer
     finally:
@@ -88,16 +97,24 @@ def _recorded(reel: Reel, report: Report, profile: RenderProfile) -> Iterator[St
 
 def _look(server: viser.ViserServer, reel: Reel) -> None:
     """Stand where everything that happens is seen."""
-    layout = reel.robot.layout
-    com = reel.rows[:, layout.slices["com"]]
-    com = com[np.isfinite(com).all(axis=1)]  # the last sample of a run that broke down is not
-    low, high = com.min(axis=0), com.max(axis=0)
+    com, view, offset = _way(reel), VIEWS[START_VIEW], np.zeros(2)
     size = float(com[0, 2])
-    view = wide_enough(VIEWS[START_VIEW], (high - low)[:2] / size)
-    target, position = camera_pose(view, size, 0.5 * (low + high)[:2], USUAL)
+    if reel.side is not None:
+        offset = reel.side.offset
+        com = np.concatenate([com, _way(reel.side.reel)])
+        view = of_two(view, offset / size)
+    low, high = com[:, :2].min(axis=0), com[:, :2].max(axis=0)
+    view = wide_enough(view, (high - low) / size)
+    target, position = camera_pose(view, size, 0.5 * (low + high + offset), USUAL)
     server.initial_camera.fov = FIELD_OF_VIEW
     server.initial_camera.position = position
     server.initial_camera.look_at = target
+
+
+def _way(reel: Reel) -> np.ndarray:
+    """The CoM in every picture but the last one of a run that broke down (n, 3), m."""
+    com: np.ndarray = reel.rows[:, reel.robot.layout.slices["com"]]
+    return com[np.isfinite(com).all(axis=1)]
 
 
 def _titled(page: str, title: str) -> str:

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from momentum_lab.app.differences import names_of_chosen
 from momentum_lab.app.overlays import Picture
 from momentum_lab.app.robots import LoadedRobot
+from momentum_lab.app.side_scene import to_the_left
 from momentum_lab.effects import ground_after
 from momentum_lab.errors import InputError
 from momentum_lab.events import Reset
@@ -22,6 +24,23 @@ PICTURES_PER_SECOND = 25
 
 
 @dataclass(frozen=True, slots=True)
+class Side:
+    """The pictures of the robot beside the first.
+
+    Attributes:
+        reel: one picture for every picture of the first; the last ones are alike if its simulation stopped.
+        since: the first picture in which it is there.
+        names: what to call the first and the second robot.
+        offset: from the first robot to where it is drawn (2,), m.
+    """
+
+    reel: Reel
+    since: int
+    names: tuple[str, str]
+    offset: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
 class Reel:
     """The pictures of a run.
 
@@ -29,19 +48,21 @@ class Reel:
         title: what it shows, for people.
         robot: who was pushed, with its meshes.
         rows: one sample per picture, oldest first (n, width).
-        step: simulated time from one picture to the next, s.
+        rate: pictures per second of simulated time.
         pushes: all pushes, sized.
         ground: the ground at all times of the run.
         safe_border: the border that the controller kept in the end, m.
+        side: the robot beside this one; None when there is none.
     """
 
     title: str
     robot: LoadedRobot
     rows: np.ndarray
-    step: float
+    rate: float
     pushes: tuple[Push, ...]
     ground: Ground
     safe_border: float
+    side: Side | None = None
 
     @classmethod
     def of(cls, run: FinishedRun, robot: LoadedRobot) -> Reel:
@@ -58,20 +79,27 @@ class Reel:
         every = max(1, round(1.0 / (PICTURES_PER_SECOND * timestep)))
         if not len(run.recording):
             raise InputError("recording", "no samples", "a run of at least one tick")
+        rows = run.recording.rows(every)
+        return cls._of(run, robot, rows, every, _side(run, robot, rows, every))
+
+    @classmethod
+    def _of(
+        cls, run: FinishedRun, robot: LoadedRobot, rows: np.ndarray, every: int, side: Side | None = None
+    ) -> Reel:
         return cls(
             _title(run),
             robot,
-            run.recording.rows(every),
-            every * timestep,
+            rows,
+            1.0 / (every * run.scenario.timestep),
             run.pushes,
             _ground(run),
             float(getattr(run.choices.gains, "safe_border", 0.0)),
+            side,
         )
 
-    @property
-    def seconds(self) -> float:
-        """How long it plays, s of simulated time."""
-        return len(self.rows) * self.step
+    def time(self, picture: int) -> float:
+        """When a picture comes, s since the first one."""
+        return picture / self.rate
 
     @property
     def samples(self) -> list[Sample]:
@@ -86,14 +114,31 @@ class Reel:
         return Picture(self.robot.model, latest, self.safe_border, arrow_scale)
 
 
-def _title(run: FinishedRun) -> str:
-    words = (
-        run.scenario.name,
-        run.robot.spec.name,
-        run.choices.controller,
-        f"priority {run.choices.priority:g}",
+def _side(run: FinishedRun, robot: LoadedRobot, rows: np.ndarray, every: int) -> Side | None:
+    """The robot beside the first at the times of the first one's samples (n, width)."""
+    beside, time = run.beside, robot.layout.slices["time"]
+    if beside is None or not len(beside.recording):
+        return None
+    own = beside.recording.rows()
+    late = (rows[:, time] - own[0, time]) / run.scenario.timestep
+    places = np.rint(late.ravel()).astype(int)
+    there = np.clip(places, 0, len(own) - 1)
+    first = Sample(robot.layout, robot.layout.slices, rows[0])
+    return Side(
+        Reel._of(beside, robot, own[there], every),
+        int(np.searchsorted(places, 0)),
+        names_of_chosen(run.choices, beside.choices),
+        to_the_left(float(first["com"][2]), first["q"]),
     )
-    return " · ".join(words)
+
+
+def _title(run: FinishedRun) -> str:
+    chosen, robot = run.choices, run.robot.spec.name
+    if run.beside is None:
+        return " · ".join((run.scenario.name, robot, chosen.controller, f"priority {chosen.priority:g}"))
+    names = names_of_chosen(chosen, run.beside.choices)
+    same = (chosen.controller,) if chosen.controller == run.beside.choices.controller else ()
+    return " · ".join((run.scenario.name, robot, *same, " beside ".join(names)))
 
 
 def _ground(run: FinishedRun) -> Ground:

@@ -17,9 +17,6 @@ from momentum_lab.palette import Color
 
 _FREE_FLYER = 1
 
-MODIFIER = "shift"
-"""What a hand that pulls holds down; without it a drag turns the picture, wherever it begins."""
-
 
 @dataclass(frozen=True, slots=True)
 class Least:
@@ -50,6 +47,9 @@ class RobotScene:
         root: name of the node that everything hangs below.
         color: of all its meshes, red, green, blue, 0 to 255; None: their own.
         least: the smallest motion that is sent.
+
+    Attributes:
+        there: whether it is still in the scene.
     """
 
     def __init__(
@@ -71,6 +71,7 @@ class RobotScene:
         self._positions: dict[int, tuple[float, ...]] = {}
         self._frames = self._add_frames(client)
         self._parts = robot.meshes
+        self.there = True
         self._meshes = [
             client.scene.add_mesh_simple(
                 f"{self._frames[mesh.joint].name}/mesh_{i}",
@@ -91,14 +92,16 @@ class RobotScene:
         """The configuration that is drawn (nq,)."""
         return self._drawn.copy()
 
-    def on_drag(self, note: Callable[[int, Any], Awaitable[None]]) -> None:
-        """Let a hand that holds Shift drag any part of the robot; without Shift it turns the picture.
+    def on_drag(self, note: Callable[[int, Any], Awaitable[None]], modifier: str | None) -> None:
+        """Let a hand drag any part of the robot, and no longer as it could before.
 
         Args:
             note: is told which joint the part moves with, and viser's event.
+            modifier: the key that it holds down; without it a drag turns the picture. None: no key.
         """
         for mesh, handle in zip(self._parts, self._meshes, strict=True):
-            _listen(handle, mesh.joint, note)
+            handle.remove_drag_callback("all")
+            _listen(handle, mesh.joint, note, modifier)
 
     def draw(self, q: np.ndarray) -> None:
         """Move to a configuration (nq,)."""
@@ -141,6 +144,7 @@ class RobotScene:
 
     def remove(self) -> None:
         """Take the robot out of the scene."""
+        self.there = False
         self._frames[_FREE_FLYER].remove()
 
     def _joint_of(self, angle: int) -> int:
@@ -167,8 +171,10 @@ class RobotScene:
             self._positions[joint] = frame.position = position
 
 
-def _listen(handle: Any, joint: int, note: Callable[[int, Any], Awaitable[None]]) -> None:
+def _listen(
+    handle: Any, joint: int, note: Callable[[int, Any], Awaitable[None]], modifier: str | None
+) -> None:
     async def dragged(event: Any) -> None:
         await note(joint, event)
 
-    handle.on_drag("left", modifier=MODIFIER)(dragged)
+    handle.on_drag("left", modifier=modifier)(dragged)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass
 
+from momentum_lab.app.coarse import coarse
 from momentum_lab.recording import Layout
 from momentum_lab.robot.geometry import LinkMesh, visual_meshes
 from momentum_lab.robot.model import RobotModel
@@ -25,19 +26,28 @@ class LoadedRobot:
     layout: Layout
 
     @classmethod
-    def of(cls, model: RobotModel) -> LoadedRobot:
+    def of(cls, model: RobotModel, cell: float = 0.0) -> LoadedRobot:
         """A robot with its meshes.
+
+        Args:
+            model: the robot.
+            cell: details smaller than this are drawn together, m; 0: none are.
 
         Raises:
             RobotError: a mesh is missing.
         """
-        return cls(model, visual_meshes(model), Layout.of(model))
+        return cls(model, coarse(visual_meshes(model), cell), Layout.of(model))
 
 
 class RobotShelf:
-    """Loads each robot when it is asked for the first time."""
+    """Loads each robot when it is asked for the first time.
 
-    def __init__(self) -> None:
+    Args:
+        cell: details of their meshes smaller than this are drawn together, m; 0: none are.
+    """
+
+    def __init__(self, cell: float = 0.0) -> None:
+        self._cell = cell
         self._lock = threading.Lock()
         self._robots: dict[str, LoadedRobot] = {}
 
@@ -49,5 +59,5 @@ class RobotShelf:
         """
         with self._lock:
             if name not in self._robots:
-                self._robots[name] = LoadedRobot.of(RobotModel.named(name))
+                self._robots[name] = LoadedRobot.of(RobotModel.named(name), self._cell)
             return self._robots[name]

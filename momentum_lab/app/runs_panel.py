@@ -23,6 +23,7 @@ from momentum_lab.events import RunAgain, SetBeside
 AS_FIRST = "as the first"
 # How often the table changes on the screen, s.
 _PERIOD = 0.3
+_COUNTED = "seconds count from the latest push before"
 _KEEP, _AGAIN = "Keep this run as A  (M)", "Same pushes again  (N)"
 
 
@@ -180,10 +181,11 @@ def table(columns: list[tuple[str, Facts]], settings: dict[str, tuple[str, ...]]
     body = "".join(_row(name, values) for name, values in rows)
     chosen = "".join(_row(name, values) for name, values in settings.items())
     different = chosen or _row("nothing was chosen differently", ())
+    whole = f'<tr><td colspan="{len(columns) + 1}" class="dim"'
     return (
         '<div class="lab small n" data-runs="1"><table style="border-collapse:collapse;width:100%">'
-        f"<tr><th></th>{head}</tr>{body}"
-        f'<tr><td colspan="{len(columns) + 1}" class="dim" style="padding-top:.4em">what differs</td></tr>'
+        f"<tr><th></th>{head}</tr>{body}{whole}>{_COUNTED}</td></tr>"
+        f'{whole} style="padding-top:.4em">what differs</td></tr>'
         f"{different}</table></div>"
     )
 

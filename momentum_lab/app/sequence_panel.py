@@ -118,6 +118,5 @@ def in_words(push: Push) -> str:
     """When, how hard, how long, and where to."""
     where = "" if push.body is None else f", {push.body.replace('_', ' ')}"
     return (
-        f"{push.start:.2f} s: {push.force or 0.0:.0f} N, {1e3 * push.duration:.0f} ms, "
-        f"{push.direction_deg:g}°{where}"
+        f"{push.start:.2f} s: {push.force or 0.0:.0f} N, {1e3 * push.duration:.0f} ms, {push.towards}{where}"
     )

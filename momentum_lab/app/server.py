@@ -67,7 +67,7 @@ class LabServer:
         self._first, self._profile = as_run(first), profile
         scenario = self._first.scenario
         warm_up()
-        self._shelf = RobotShelf()
+        self._shelf = RobotShelf(profile.cell)
         # Refuses what cannot start.
         sessions = [Session(side, self._shelf.get(side.robot).model, capacity=1) for side in sides(scenario)]
         self._pose = FirstPose.of(sessions[0])

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -12,6 +14,7 @@ import viser
 
 from momentum_lab.app import html, share_html
 from momentum_lab.app.exporter import made_elsewhere
+from momentum_lab.app.kept_before import KeptBefore
 from momentum_lab.app.wire import Opened, RunTaken, Truth
 from momentum_lab.errors import LabError
 from momentum_lab.run_file import Run, decoded, encoded
@@ -31,7 +34,11 @@ _FILES = {
     "recording to play (.html)": ("recording", "-recording.html"),
     "recording (.viser)": ("viser", ".viser"),
     "film (.mp4)": ("film", ".mp4"),
+    "small film (.mp4)": ("small film", ".mp4"),
 }
+_IN_SIGHT = "This tab draws it: keep it in sight; its own picture stands still."
+# Height of a film, pixels.
+_FILMS = {"film": 720, "small film": 360}
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +51,12 @@ class Sharing:
         tell: shows a person what was wrong.
         send: lets the browser save a file of a name.
         view: a picture of what the browser shows, as a PNG file.
-        film: a run as an .mp4 file; it is told the fraction that is done, and ends when that raises an error.
+        film: a run as an .mp4 file so many pixels high; it tells the fraction that is done, and ends when that
+            raises an error.
         url: where the lab is served.
+        take_back: puts the run before the opened one on stage again.
+        say: tells a person what has happened.
+        warn: tells a person what is wrong, until it is closed: a page that loads may take longer than a notice.
     """
 
     take: Callable[[bool], RunTaken]
@@ -53,8 +64,11 @@ class Sharing:
     tell: Callable[[str], None]
     send: Callable[[str, bytes], None]
     view: Callable[[], bytes]
-    film: Callable[[RunTaken, Callable[[float], None]], bytes]
+    film: Callable[[RunTaken, int, Callable[[float], None]], bytes]
     url: str
+    take_back: Callable[[], None]
+    say: Callable[[str], None]
+    warn: Callable[[str], None]
 
 
 class SharePanel:
@@ -73,7 +87,7 @@ class SharePanel:
         gui.add_html(html.sentence(_INTRODUCTION))
         make = gui.add_button("Make a code", icon=viser.Icon.QRCODE, hint="Of the run as it is now.")
         self._code = gui.add_html("")
-        self._pasted = gui.add_text("code", "", hint="A code, or an address that ends in one.")
+        self._pasted: Any = gui.add_text("code", "", hint="A code, or an address that ends in one.")
         open_code = gui.add_button("Open the code", color="gray", icon=viser.Icon.FOLDER_OPEN)
         upload = gui.add_upload_button(
             "Open a run file",
@@ -83,10 +97,12 @@ class SharePanel:
             hint="A run file (.json, .toml) or a trace (.npz).",
         )
         self._opened = gui.add_html("")
+        self._kept = KeptBefore(gui, sharing.take_back, sharing.say, self._forget_codes)
         self._what = gui.add_dropdown(
             "file",
             tuple(_FILES),
-            hint="All but the run file hold the last minute since the robot stood up, and of two robots the first.",
+            hint="All but the run file hold the last minute since the robot stood up. Pictures, recordings and "
+            "films show both robots, the others the first.",
         )
         self._download = gui.add_button("Download", color="gray", icon=viser.Icon.DOWNLOAD)
         self._progress = gui.add_html("", visible=False)
@@ -99,13 +115,14 @@ class SharePanel:
         self._download.on_click(lambda _: self._attempt(self._save))
         address.on_update(lambda event: self._arrived(event))
 
-    def follow(self, truth: Truth) -> None:
-        """Show how far a run is that has been opened."""
+    def follow(self, truth: Truth, left: tuple[str, ...] = ()) -> None:
+        """Show how far a run is that has been opened, and what can be taken back."""
+        self._kept.follow(truth, left)
         text = "" if truth.opened is None else html.sentence(opened_words(truth.opened))
         if text != self._told:
             self._told = self._opened.content = text
 
-    def _attempt(self, act: Callable[[], None]) -> None:
+    def _attempt(self, act: Callable[[], None], tell: Callable[[str], None] | None = None) -> None:
         """Do something once at a time; what is wrong with it is told, and the session goes on."""
         if not self._busy.acquire(blocking=False):
             self._sharing.tell("One thing at a time: the last file is still being made.")
@@ -113,7 +130,7 @@ class SharePanel:
         try:
             act()
         except LabError as error:
-            self._sharing.tell(str(error))
+            (tell or self._sharing.tell)(str(error))
         finally:
             self._busy.release()
 
@@ -122,14 +139,26 @@ class SharePanel:
         self._code.content = share_html.code(code, link(self._sharing.url, code))
 
     def _open_code(self, text: str) -> None:
-        self._sharing.open(from_code(text))
+        self._open(from_code(text))
 
     def _open_file(self, file: Any) -> None:
-        self._sharing.open(decoded(file.name, file.content))
+        self._open(decoded(file.name, file.content))
+
+    def _open(self, run: Run) -> None:
+        self._sharing.open(run)
+        self._forget_codes()
+
+    def _forget_codes(self) -> None:
+        """Another run is on stage: codes of the one before would be taken for its own."""
+        self._code.content = ""
+        self._pasted.value = ""
 
     def _arrived(self, event: Any) -> None:
         if event.client is not None and event.target.value:
-            self._attempt(lambda: self._open_code(event.target.value))
+            self._attempt(lambda: self._open_code(event.target.value), self._of_the_address)
+
+    def _of_the_address(self, problem: str) -> None:
+        self._sharing.warn(f"The address of this page opens no run. {problem}")
 
     def _save(self) -> None:
         kind, end = _FILES[self._what.value]
@@ -145,14 +174,14 @@ class SharePanel:
     def _content(self, kind: str, taken: RunTaken) -> bytes:
         if kind == "view":
             return self._sharing.view()
-        if kind == "film":
-            return self._film(taken)
+        if kind in _FILMS:
+            return self._film(taken, _FILMS[kind])
         return encoded(taken.run) if kind == "run" else made_elsewhere(kind, taken)
 
-    def _film(self, taken: RunTaken) -> bytes:
+    def _film(self, taken: RunTaken, lines: int) -> bytes:
         self._stopped.clear()
         self._stop.visible = True
-        percents = set[int]()
+        percents, begun = set[int](), time.monotonic()
 
         def report(fraction: float) -> None:
             if self._stopped.is_set():
@@ -160,10 +189,10 @@ class SharePanel:
             percent = int(100.0 * fraction)
             if percent not in percents:
                 percents.add(percent)
-                self._show(f"film: {percent} % of its pictures taken, keep this tab in sight.")
+                self._show(f"film: {percent} % taken{_left(fraction, begun)}. {_IN_SIGHT}")
 
         try:
-            return self._sharing.film(taken, report)
+            return self._sharing.film(taken, lines, report)
         finally:
             self._stop.visible = False
 
@@ -177,6 +206,12 @@ def file_name(run: Run) -> str:
     """A name for files about a run: small letters, digits, hyphens."""
     words = f"{run.scenario.name}-{run.scenario.robot.removesuffix('.toml').rpartition('/')[2]}"
     return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")[:80] or "run"
+
+
+def _left(fraction: float, begun: float) -> str:
+    """How long a film still takes, for people, if it goes on as since it was begun."""
+    seconds = (time.monotonic() - begun) * (1.0 / fraction - 1.0) if fraction else 0.0
+    return f", {math.ceil(seconds / 60.0)} min to go" if seconds > 90.0 else f", {seconds:.0f} s to go"
 
 
 def opened_words(opened: Opened) -> str:

@@ -12,6 +12,7 @@ from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.view_panel import ViewSettings
+from momentum_lab.app.viewer import Viewer
 from momentum_lab.app.wire import Truth
 from momentum_lab.recording import Sample
 
@@ -22,8 +23,8 @@ _APART, _ABOVE = 1.5, 1.08
 _LOWEST = 0.35
 # Names follow a body that moves further than this, m.
 _SAME_PLACE = 5e-3
-# The second robot has the labels of what differs; the others would be read twice.
-_LABELLED = frozenset({"gap"})
+LABELLED = frozenset({"gap"})
+"""The second robot has the labels of what differs; the others would be read twice."""
 
 
 class SideScene:
@@ -38,7 +39,7 @@ class SideScene:
     def __init__(self, client: viser.ClientHandle, robot: LoadedRobot, sample: Sample) -> None:
         size = float(sample["com"][2])
         self._loaded, self._com = robot, sample["com"].copy()
-        self.offset = _APART * size * _left(sample["q"])
+        self.offset = to_the_left(size, sample["q"])
         self._node = client.scene.add_frame(_ROOT, position=np.append(self.offset, 0.0), show_axes=False)
         self.body = RobotScene(client, robot, sample["q"], f"{_ROOT}/robot")
         self._marks = MarkScene(client, size, _ROOT)
@@ -64,7 +65,7 @@ class SideScene:
         self._com = sample["com"].copy()
         self.body.draw(sample["q"])
         self._marks.paint(settings.theme)
-        self._marks.draw(overlays(sample, picture), settings.shown, settings.labelled & _LABELLED)
+        self._marks.draw(overlays(sample, picture), settings.shown, settings.labelled & LABELLED)
 
     def name(self, words: tuple[str, str], places: tuple[np.ndarray, np.ndarray]) -> None:
         """Write over both robots what each one is.
@@ -94,12 +95,12 @@ class NamePlate:
     """Some words above a robot.
 
     Args:
-        client: the browser tab.
+        client: where they are drawn.
         name: of the node.
         size: height of the robot's CoM, m.
     """
 
-    def __init__(self, client: viser.ClientHandle, name: str, size: float) -> None:
+    def __init__(self, client: Viewer, name: str, size: float) -> None:
         self._size = size
         self._at = np.zeros(3)
         self._handle = client.scene.add_label(
@@ -120,8 +121,13 @@ class NamePlate:
         self._handle.remove()
 
 
-def _left(q: np.ndarray) -> np.ndarray:
-    """Unit vector to the left of a robot with configuration q (nq,), on the ground (2,)."""
+def to_the_left(size: float, q: np.ndarray) -> np.ndarray:
+    """From a robot to where the one beside it is drawn, on the ground (2,), m.
+
+    Args:
+        size: height of its CoM, m.
+        q: its configuration (nq,).
+    """
     forward = pin.Quaternion(*q[[6, 3, 4, 5]].tolist()).toRotationMatrix()[:2, 0]
     x, y = forward / np.linalg.norm(forward)
-    return np.array([-y, x])
+    return _APART * size * np.array([-y, x])

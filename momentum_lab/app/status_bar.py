@@ -9,6 +9,7 @@ from collections.abc import Callable
 import viser
 
 from momentum_lab.app import html
+from momentum_lab.app.push_strip import PushStrip
 from momentum_lab.app.series import KEPT
 from momentum_lab.app.time_bar import cell
 from momentum_lab.app.widgets import Bound, Post
@@ -24,10 +25,17 @@ _DIRECTIONS = {0: "forward", 90: "to the left", 180: "backward", 270: "to the ri
 # A status that says more than "standing" stays readable for this long, s.
 _READABLE = 0.9
 _PASSING = frozenset({"border", "lifted", "solver"})
-# How far the slider reaches back: to the next of these behind the start of the run, s.
-_REACHES = (5.0, 10.0, 20.0, 40.0, KEPT)
+# The slider reaches back to the next multiple of this behind the start of the run, s.
+_REACH = 5.0
 # How often the figures change, s.
 _PERIOD = 0.1
+_LOOK_BACK = "look back (s)"
+_GO_ON = (
+    "With the gains and the controller of now. What was done later is forgotten; "
+    "pushes of the scenario or of an opened run come again."
+)
+# So many pushes are named, the others counted.
+_NAMED = 3
 
 
 class StatusBar:
@@ -61,22 +69,25 @@ class StatusBar:
         self._buttons = gui.add_button_group("time", _buttons(playing=True))
         gui.add_html(cell("speed"))
         speeds = gui.add_button_group("speed", tuple(_SPEEDS))
+        gui.add_html(cell("strip"))
+        self._strip = PushStrip(gui, _LOOK_BACK, clock)
         gui.add_html(cell("look"))
         self._look_back: Bound[float] = Bound(
             gui.add_slider(
-                "look back (s)",
-                -_REACHES[0],
+                _LOOK_BACK,
+                -_REACH,
                 0.0,
                 0.01,
                 0.0,
-                hint="Stops time and shows what was. Play goes on from the end, the button below from there.",
+                hint="Stops time and shows what was; a line in the plots is where you are. "
+                "Play goes on from the end, the button below from there.",
             ),
             lambda seconds: LookBack(max(0.0, -seconds)),
             post,
             clock,
         )
         self._branch = gui.add_button(
-            "Go on from here  (B)", color=(0, 114, 178), icon=viser.Icon.GIT_BRANCH, visible=False
+            branch_words(()), color=(0, 114, 178), icon=viser.Icon.GIT_BRANCH, visible=False, hint=_GO_ON
         )
         self._stand_up.on_click(lambda _: post(Reset()))
         self._buttons.on_click(lambda event: self._pressed(event.target.value))
@@ -87,23 +98,27 @@ class StatusBar:
         """Play what is paused, pause what plays."""
         self._post(Pause() if self._playing else Play())
 
-    def follow(self, truth: Truth, status: Status, simulated: float) -> None:
+    def follow(self, truth: Truth, status: Status, simulated: float, tried: str = "") -> None:
         """Show how the robot is doing.
 
         Args:
             truth: what is the case.
             status: the most important thing to say about the latest sample.
             simulated: its time, s.
+            tried: what there is to say about a push that is only tried.
         """
         if truth.playing != self._playing:
             self._playing = truth.playing
             self._buttons.options = _buttons(truth.playing)
             self._next = -math.inf
-        reach = next((reach for reach in _REACHES if simulated + truth.behind <= reach), KEPT)
+        end = simulated + truth.behind
+        reach = min(KEPT, _REACH * max(1, math.ceil(end / _REACH)))
         if self._look_back.handle.min != -reach:
             self._look_back.handle.min = -reach
         self._look_back.follow(-truth.behind)
         self._branch.visible = truth.behind > 0.0
+        self._warn(truth.forgotten)
+        self._strip.follow([end - start for start in truth.pushed], reach, truth.playing)
         now = self._clock()
         if now < self._next and truth.playing:
             return
@@ -118,7 +133,7 @@ class StatusBar:
         )
         self._write("time", self._time, line)
         down = truth.fall is not None or truth.stopped is not None
-        self._write("sentence", self._sentence, html.sentence(_sentence(truth) or self._invitation))
+        self._write("sentence", self._sentence, html.sentence(tried or _sentence(truth) or self._invitation))
         self._sentence.visible = not down and truth.behind == 0.0
         self._stand_up.visible = down and truth.behind == 0.0
 
@@ -131,6 +146,13 @@ class StatusBar:
         self._status.content = html.status_line(
             "stopped", "the simulation has ended: reload the page", "black"
         )
+
+    def _warn(self, forgotten: tuple[float, ...]) -> None:
+        """Say beforehand what going on from here forgets."""
+        words = branch_words(forgotten)
+        if self._branch.label != words:
+            self._branch.label = words
+            self._branch.hint = f"{_GO_ON}{forgotten_words(forgotten)}"
 
     def _readable(self, status: Status, now: float, playing: bool) -> Status:
         """The status, or one that has not been readable long enough yet."""
@@ -158,6 +180,23 @@ def _buttons(playing: bool) -> tuple[str, ...]:
     return ("Pause" if playing else "Play", _SMALL, _LARGE, _STAND_UP)
 
 
+def branch_words(forgotten: tuple[float, ...]) -> str:
+    """What the button to go on says, given the pushes of a hand that are not repeated, s of the run."""
+    if not forgotten:
+        return "Go on from here  (B)"
+    pushes = "push" if len(forgotten) == 1 else "pushes"
+    return f"Go on without {len(forgotten)} later {pushes}  (B)"
+
+
+def forgotten_words(forgotten: tuple[float, ...]) -> str:
+    """When those pushes were, in a sentence."""
+    if not forgotten:
+        return ""
+    times = ", ".join(f"{start:.2f} s" for start in forgotten[:_NAMED])
+    more = f" and {len(forgotten) - _NAMED} more" if len(forgotten) > _NAMED else ""
+    return f" Forgotten: pushed at {times}{more}."
+
+
 _BITS = {True: ", with the same bits", False: ", with other bits", None: ""}
 
 
@@ -170,4 +209,6 @@ def _sentence(truth: Truth) -> str:
         return ""
     towards = _DIRECTIONS.get(round(push.direction_deg) % 360, f"{push.direction_deg:.0f}° from forward")
     where = "" if push.body is None else f" on the {push.body.replace('_', ' ')}"
-    return f"Last push: {push.force or 0.0:.0f} N for {1e3 * push.duration:.0f} ms {towards}{where}."
+    return (
+        f"Last push: {push.force or 0.0:.0f} N for {1e3 * push.duration:.0f} ms {towards}{push.tilt}{where}."
+    )

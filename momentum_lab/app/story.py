@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from momentum_lab.app.beginnings import latest_before
 from momentum_lab.app.series import KEPT
 from momentum_lab.app.support_now import polygon_of
 from momentum_lab.app.wire import Truth
@@ -23,10 +24,10 @@ class Facts:
 
     Attributes:
         seconds: simulated time of its last sample, s.
-        fall_time: when the robot fell, s after its first push; None while it stands.
+        fall_time: when the robot fell, s after the latest push before; None while it stands.
         excursion: largest horizontal distance of the CoM from its start, m.
         angular_momentum: largest |k| about the CoM, kg m^2/s.
-        settled_after: how long after the beginning of its first push the CoM came to rest, s; None if it has not.
+        settled_after: how long after the beginning of its latest push the CoM came to rest, s; None if it has not.
         margin: smallest distance of the CoP from the edge of the support until a fall, m; None without support.
     """
 
@@ -82,13 +83,12 @@ class Story:
         standing = np.array(self._times) < (math.inf if truth.fall is None else truth.fall.time)
         margins = np.array(self._margins)[standing]
         margins = margins[np.isfinite(margins)]
-        pushed = 0.0 if truth.first_push is None else truth.first_push.start
         return Facts(
             seconds=self._times[-1],
-            fall_time=None if truth.fall is None else truth.fall.time - pushed,
+            fall_time=None if truth.fall is None else truth.fall.time - _pushed(truth, truth.fall.time),
             excursion=float(np.linalg.norm(com - com[0], axis=1).max()),
             angular_momentum=float(np.linalg.norm(angular, axis=1).max()),
-            settled_after=None if truth.fall is not None else self._settled(rows, pushed),
+            settled_after=None if truth.fall is not None else self._settled(rows, _pushed(truth, math.inf)),
             margin=float(margins.min()) if margins.size else None,
         )
 
@@ -123,3 +123,8 @@ class Story:
     def _keep(self, start: int, end: int) -> None:
         for kept in (self._times, self._rows, self._margins):
             del kept[end:], kept[:start]
+
+
+def _pushed(truth: Truth, time: float) -> float:
+    """When the latest push before a time began, s; the start of the run without one."""
+    return latest_before(truth.pushed, time) or 0.0

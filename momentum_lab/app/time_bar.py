@@ -13,7 +13,7 @@ from momentum_lab.app.page_plan import LEAST_BAR
 _GAP = 8.0
 # By how much the width of the picture may change before the bar follows, pixels.
 _SAME = 2.0
-_CELLS = ("status", "time", "words", "buttons", "speed", "look")
+_CELLS = ("status", "time", "words", "buttons", "speed", "strip", "look")
 
 
 def cell(name: str) -> str:
@@ -32,7 +32,7 @@ _UNSEEN = "position:absolute;width:1px!important;height:1px;overflow:hidden;clip
 _STYLE = (
     "<style>div:has(>.lab-cell){display:none}"
     f"{_GRID}{{display:grid;align-items:center;grid-template-columns:1fr 1fr;padding:0 .2em;"
-    "grid-template-areas:'status time' 'status words' 'buttons speed' 'look look'}"
+    "grid-template-areas:'status time' 'status words' 'buttons speed' 'strip strip' 'look look'}"
     f"{_GRID}>*{{grid-area:words;min-width:0;padding-bottom:.25em}}"
     + "".join(f"{_GRID}>div:has(>.lab-{name})+*{{grid-area:{name}}}" for name in _CELLS)
     # "Pause" and "1/2" say by themselves what they are for; a screen reader still reads the labels.

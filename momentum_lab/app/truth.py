@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import msgspec
 import numpy as np
 
+from momentum_lab.app.beginnings import beginnings
 from momentum_lab.app.chosen import told
 from momentum_lab.app.wire import Fallen, Opened, RunTaken, Truth
 from momentum_lab.beside import Beside
@@ -48,6 +49,7 @@ def truth_of(
     clock: Clock,
     beside: Beside | None,
     opened: Opened | None,
+    forgotten: tuple[float, ...] = (),
 ) -> Truth:
     """What is the case; what waits for the next tick counts as done.
 
@@ -58,6 +60,7 @@ def truth_of(
         clock: how its time runs.
         beside: what a robot beside this one does differently.
         opened: the opened run that plays.
+        forgotten: pushes that going on from what is looked at would not repeat, s.
     """
     time = shown.number("time")
     return Truth(
@@ -79,6 +82,8 @@ def truth_of(
         first_push=min(_begun(session, time), key=_start, default=None),
         beside=beside,
         opened=opened,
+        pushed=beginnings(session.pushes, session.recording.latest.number("time")),
+        forgotten=forgotten,
         **told(session.choices_after(waiting)),
     )
 
@@ -86,14 +91,17 @@ def truth_of(
 def taken_of(
     session: Session, waiting: Sequence[SessionEvent], beside: Beside | None, recording: bool
 ) -> RunTaken:
-    """The run as it is now, with its samples or without; a robot beside the first is in its scenario."""
+    """The run as it is now, with its samples or without; what waits for the next tick counts as done.
+
+    A robot beside the first is in its scenario.
+    """
     run = run_of(session, waiting)
     scenario = msgspec.structs.replace(run.scenario, beside=beside)
     return RunTaken(
         run=msgspec.structs.replace(run, scenario=scenario),
         rows=session.recording.rows().tobytes() if recording else b"",
         time=session.time,
-        pushes=session.pushes,
+        pushes=session.pushes_after(waiting),
         fall=_fallen(session, session.time),
         failures=session.solver_failures,
         com_speed=com_speed(session),

@@ -19,17 +19,18 @@ from momentum_lab.app.demo_stage import DemoStage
 from momentum_lab.app.exporter import finished
 from momentum_lab.app.film import film
 from momentum_lab.app.first_pose import FirstPose
-from momentum_lab.app.hand import Reach
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
 from momentum_lab.app.mark_scene import MarkScene
 from momentum_lab.app.marks import FEW_LABELS, Theme
+from momentum_lab.app.notices import Notices
 from momentum_lab.app.overlays import Picture, overlays
 from momentum_lab.app.page_plan import PagePlan
 from momentum_lab.app.panels import Panels
 from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.profile import RenderProfile
+from momentum_lab.app.pulling import Reach
 from momentum_lab.app.reel import Reel
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot, RobotShelf
@@ -103,12 +104,15 @@ class Visitor:
         self._plan = PagePlan.of(client)
         self._link = Link(first, choices.robots, choices.scenarios)
         self._stage: Stage | None = None
+        self._view = START_VIEW
         self._panels: Panels | None = None
-        self._comparison = Comparison(client)
+        self._comparison, self._notices = Comparison(client), Notices(client)
         self._demo = DemoStage(client, self._link.ask, self._robot, demo)
         self._run = -1
         self._floor: tuple[float, Theme] = (0.0, "light")
         self._left = False
+        # A browser has only so much time for drawing: none of it goes to what moves while it draws a film.
+        self._filming = threading.Event()
         self.frames = 0
         self.latest: Frame | None = None
         self._thread = threading.Thread(target=self._live, name=f"visitor-{client.client_id}", daemon=True)
@@ -138,7 +142,7 @@ class Visitor:
 
     def tell(self, words: str) -> None:
         """Show a notice."""
-        self._client.add_notification("Not possible", words, auto_close_seconds=8.0, color="orange")
+        self._notices.tell(words)
 
     def close(self) -> None:
         """End the session and the drawing: the tab has been closed."""
@@ -186,11 +190,9 @@ class Visitor:
         if truth.run != self._run:
             self._run = truth.run
             panels.plots.clear()
-        with self._client.atomic():  # or a picture could be sent in two halves
-            self._draw_scene(stage, panels, truth, sample)
-            changed = self._comparison.draw(frame, sample, panels.settings)
+        changed = not self._filming.is_set() and self._draw_picture(stage, panels, frame, sample)
         if changed:
-            self._look(START_VIEW)
+            self._look(self._view)
             self._reach_other(panels, stage)
         self._demo.after(stage.camera, self._comparison.spread, frame.demo)
         self._client.flush()
@@ -208,7 +210,7 @@ class Visitor:
         marks, camera = MarkScene(self._client, size), Camera(self._client, size, self._plan.covered)
         plates = PlateScene(self._client, loaded.model)
         self._stage = Stage(name, loaded, body, marks, plates, camera, size)
-        self._look(START_VIEW)
+        self._look(self._view)
         if self._panels is not None:
             self._receive(self._panels, self._stage)
         return self._stage
@@ -247,14 +249,22 @@ class Visitor:
             lambda: view_of(self._client),
             self._film,
             self._url,
+            self._link.take_back,
+            self._notices.say,
+            self._notices.warn,
         )
 
-    def _film(self, taken: RunTaken, report: Callable[[float], None]) -> bytes:
-        """A run as this tab would show it, as an .mp4 file."""
+    def _film(self, taken: RunTaken, lines: int, report: Callable[[float], None]) -> bytes:
+        """A run as this tab would show it, as an .mp4 file; the tab's own picture stands still meanwhile."""
         if self._panels is None:
             raise InputError("film", "a page without panels", "a page that has been loaded")
         reel = Reel.of(finished(taken), self._shelf.get(taken.run.scenario.robot))
-        return film(self._client, reel, self._panels.settings, report)
+        self._filming.set()
+        try:
+            return film(self._client, reel, self._panels.settings, lines, report)
+        finally:
+            self._filming.clear()
+            self._link.want_frame()
 
     def _receive(self, panels: Panels, stage: Stage) -> None:
         """Fit the panels to the robot on stage."""
@@ -264,6 +274,12 @@ class Visitor:
         panels.begin_plots(stage.loaded)
         panels.ground.set_feet(stage.loaded.layout.foot_names)
         panels.settings.changed = True
+
+    def _draw_picture(self, stage: Stage, panels: Panels, frame: Frame, sample: Sample) -> bool:
+        """Draw both robots; whether the second one has come or gone."""
+        with self._client.atomic():  # or a picture could be sent in two halves
+            self._draw_scene(stage, panels, frame.truth, sample)
+            return self._comparison.draw(frame, sample, panels.settings)
 
     def _draw_scene(self, stage: Stage, panels: Panels, truth: Truth, sample: Sample) -> None:
         settings = panels.settings
@@ -295,22 +311,23 @@ class Visitor:
 
     def _draw_panels(self, panels: Panels, frame: Frame, loaded: LoadedRobot, sample: Sample) -> None:
         truth = frame.truth
-        panels.status.follow(truth, told(frame, sample, loaded), sample.number("time"))
         panels.control.follow(truth)
         panels.learn.follow(truth, sample.number("time"), frame.lesson)
-        panels.share.follow(truth)
+        panels.share.follow(truth, frame.left)
         panels.ground.follow(truth)
         panels.mismatch.follow(truth)
         panels.control.see(sample)
-        panels.hand.playing = truth.playing
+        panels.hand.follow(truth.playing)
         panels.control.bounds.see(sample, loaded.model, truth)
         if truth.fall is None:
             panels.push.see(sample)
         panels.push.refresh()
         if truth.push is not None:
-            panels.plots.along(truth.push.direction[:2])
+            panels.plots.along(truth.push.along)
         panels.plots.add(rows_of(frame.history, loaded.layout.width))
         self._comparison.after(frame, sample, panels.runs, panels.plots)
+        tried = self._comparison.tried(frame.foreseeing)
+        panels.status.follow(truth, told(frame, sample, loaded), sample.number("time"), tried)
         panels.plots.look_at(sample.number("time") if truth.behind else math.inf)
         if not truth.playing:
             panels.plots.draw()  # nothing comes later that could show the last samples
@@ -318,8 +335,9 @@ class Visitor:
             self.tell(notice)
 
     def _look(self, name: str) -> None:
-        """Turn the camera to the robot where it is now."""
+        """Turn the camera to the robot where it is now, and to what comes on stage later."""
         stage = self._stage
+        self._view = name if name in VIEWS else self._view
         if stage is not None and name in VIEWS:
             place, spread = stage.body.place_on_ground, self._comparison.spread
             stage.camera.look(name, place if spread is None else self._comparison.middle(place), spread)

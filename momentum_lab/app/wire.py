@@ -30,6 +30,10 @@ class OpenRun(msgspec.Struct, frozen=True, tag=True):
     run: Run
 
 
+class TakeBack(msgspec.Struct, frozen=True, tag=True):
+    """Put the run on stage again that was there before another was opened."""
+
+
 class RunWanted(msgspec.Struct, frozen=True, tag=True):
     """What has been done so far has to be told, with the recording or without."""
 
@@ -88,6 +92,8 @@ class Truth(msgspec.Struct, frozen=True):
         first_push: the first push since the robot stood up; None before it has begun.
         beside: what a robot beside this one does differently; None when there is none.
         opened: the run that has been opened; None when it is no opened run that plays.
+        pushed: when pushes have begun since the robot stood up, until the end of the run, s.
+        forgotten: those of them that going on from what is looked at would not repeat, s.
     """
 
     run: int
@@ -117,6 +123,8 @@ class Truth(msgspec.Struct, frozen=True):
     first_push: Push | None = None
     beside: Beside | None = None
     opened: Opened | None = None
+    pushed: tuple[float, ...] = ()
+    forgotten: tuple[float, ...] = ()
 
 
 class Other(msgspec.Struct, frozen=True):
@@ -161,7 +169,9 @@ class Frame(msgspec.Struct, frozen=True, tag=True):
         lesson: how far the lesson has come, if that is new.
         other: the robot beside the first; None when there is none.
         foreseen: what a push would do, once for every robot and question.
+        foreseeing: how much of what is being foreseen is done, from 0 to 1; None when nothing is.
         demo: whether this is a scene that the lab plays by itself.
+        left: the runs that can be taken back, in words, the last one last.
     """
 
     truth: Truth
@@ -172,7 +182,9 @@ class Frame(msgspec.Struct, frozen=True, tag=True):
     lesson: LessonNews | None = None
     other: Other | None = None
     foreseen: tuple[Foreseen, ...] = ()
+    foreseeing: float | None = None
     demo: bool = False
+    left: tuple[str, ...] = ()
 
 
 class RunTaken(msgspec.Struct, frozen=True, tag=True):
@@ -186,6 +198,7 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
         fall: when and why the robot has fallen; None: it has not.
         failures: how many solves have failed.
         com_speed: of the CoM against the ground under the feet at the end, m/s.
+        other: the robot beside the first; None when there is none, or no samples were wanted.
     """
 
     run: Run
@@ -195,9 +208,10 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
     fall: Fallen | None
     failures: int
     com_speed: float
+    other: RunTaken | None = None
 
 
-Message = events.Event | LessonEvent | DemoEvent | FrameTaken | FrameWanted | OpenRun | RunWanted
+Message = events.Event | LessonEvent | DemoEvent | FrameTaken | FrameWanted | OpenRun | TakeBack | RunWanted
 Answer = Frame | RunTaken
 
 _encoder = msgspec.msgpack.Encoder()

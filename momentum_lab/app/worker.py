@@ -7,6 +7,7 @@ simulation does not notice. The process ends when its pipe closes.
 from __future__ import annotations
 
 import gc
+import math
 import signal
 import time
 from collections.abc import Callable
@@ -29,6 +30,7 @@ from momentum_lab.app.wire import (
     OpenRun,
     Other,
     RunWanted,
+    TakeBack,
     Truth,
     packed,
     unpacked_message,
@@ -50,6 +52,8 @@ _SHORT, _LONG = 0.001, 1.0
 _MOST_MESSAGES = 16
 # Ticks of a foresight in a row: while time runs, as long as a due tick may wait; in a pause, as long as a person may.
 _AHEAD, _AHEAD_IN_PAUSE = 5, 50
+# How many times a person is told meanwhile how far that is.
+_STEPS_AHEAD = 10
 # Samples that a reader who does not read may miss.
 _MOST_HISTORY = 1000
 
@@ -136,7 +140,7 @@ class Worker:
             case _:
                 self._take(message)
 
-    def _take(self, event: Event | LessonEvent | DemoEvent | OpenRun) -> None:
+    def _take(self, event: Event | LessonEvent | DemoEvent | OpenRun | TakeBack) -> None:
         before = self._playback
         run, playing, ticks = before.run, before.playing, before.session.ticks
         try:
@@ -186,8 +190,14 @@ class Worker:
         """A few ticks of what somebody wants to know beforehand; those that are due go first."""
         if not self._playback.foresights:
             return
+        step = self._foreseeing()
         self._foreseen = self._playback.look_ahead(_AHEAD if self._playback.playing else _AHEAD_IN_PAUSE)
-        self._news = self._news or bool(self._foreseen)
+        self._news = self._news or self._foreseeing() != step
+
+    def _foreseeing(self) -> float | None:
+        """How far that is, in steps that are worth a picture in a pause."""
+        part = self._playback.foreseen_part
+        return None if part is None else math.floor(part * _STEPS_AHEAD) / _STEPS_AHEAD
 
     def _send(self, now: float) -> None:
         """A frame, if there is something new, the last one has been taken and it is time for the next."""
@@ -203,7 +213,9 @@ class Worker:
             lesson=self._room.news(),
             other=self._other(truth),
             foreseen=self._foreseen,
+            foreseeing=self._foreseeing(),
             demo=self._room.in_demo,
+            left=self._room.left,
         )
         self._history.clear()
         self._other_history.clear()

@@ -5,7 +5,8 @@ COMMAND: app | run | limit | report | record | replay | lesson | figure | list |
 Exit codes: 0 the command did what was asked (a robot that falls is a result, not an error), 1 something broke
 down on the way, a figure's or lesson's claim or an equation does not hold, or a checked robot falls, 2 bad
 input, 130 stopped by Ctrl+C. Bad input is one line on stderr and nothing on stdout:
-`momentum-lab: ARGUMENT: got GIVEN; allowed: ALLOWED`.
+`momentum-lab: ARGUMENT: got GIVEN; allowed: ALLOWED`. Only `list lessons` lists what is sound beside a line for each
+lesson that is not.
 """
 
 from __future__ import annotations

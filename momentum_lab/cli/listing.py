@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
@@ -17,12 +18,13 @@ from momentum_lab.control.motion import MOTIONS
 from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.presets import presets
 from momentum_lab.control.registry import CONTROLLERS, controller_entry
-from momentum_lab.errors import InputError
-from momentum_lab.lesson.loader import headline, lesson_files, lesson_folder
+from momentum_lab.errors import InputError, LabError
+from momentum_lab.lesson.loader import lesson_files, lesson_folder, load_lesson
 from momentum_lab.paths import LESSONS
 from momentum_lab.robot.catalog import load_spec, robot_names
 from momentum_lab.scenario import load_scenario, scenario_names
 
+_BAD_INPUT = 2
 # Columns of a pipe have room; only a terminal has an edge.
 _WIDE = 200
 
@@ -32,9 +34,12 @@ Things = list[dict[str, Any]]
 def list_things(args: Namespace) -> int:
     """Print all things of one kind, as a table or as a JSON array of objects with a name each.
 
+    A lesson with an error in it is not among them: its file and line go to stderr, and the exit code is 2.
+
     Raises:
         InputError: there is no such kind.
     """
+    faults: list[LabError] = []
     if args.kind not in KINDS:
         raise InputError("list", args.kind, ", ".join(KINDS))
     if args.kind == "gains":
@@ -42,14 +47,16 @@ def list_things(args: Namespace) -> int:
     elif args.kind == "presets":
         things = presets_of(args.controller)
     elif args.kind == "lessons":
-        things = lessons(LESSONS if args.lessons is None else lesson_folder(args.lessons))
+        things, faults = lessons(LESSONS if args.lessons is None else lesson_folder(args.lessons))
     else:
         things = _LISTS[args.kind]()
     if args.json:
         print(msgspec.json.encode(things).decode())
     elif things:
         _show(things)
-    return 0
+    for fault in faults:
+        print(f"momentum-lab: {fault}", file=sys.stderr)
+    return _BAD_INPUT if faults else 0
 
 
 def robots() -> Things:
@@ -82,18 +89,18 @@ def scenarios() -> Things:
     return [{"name": name, "title": load_scenario(name).title} for name in scenario_names()]
 
 
-def lessons(folder: Path) -> Things:
-    """All lessons of a folder, in their order.
-
-    Raises:
-        LessonError: a script cannot be read.
-    """
-    found = []
+def lessons(folder: Path) -> tuple[Things, list[LabError]]:
+    """All lessons of a folder that can be opened, in their order, and what is wrong with the others."""
+    found, faults = [], []
     for path in lesson_files(folder):
-        title, question = headline(path)
-        number = int(path.stem.partition("_")[0])
-        found.append({"name": path.stem, "number": number, "title": title, "question": question})
-    return found
+        try:
+            lesson = load_lesson(path)
+        except LabError as error:
+            faults.append(error)
+            continue
+        words = {"title": lesson.title, "question": lesson.question}
+        found.append({"name": path.stem, "number": lesson.number, **words})
+    return found, faults
 
 
 def figures() -> Things:

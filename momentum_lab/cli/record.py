@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-import sys
 from argparse import Namespace
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from momentum_lab.cli.choices import chosen_run
 from momentum_lab.cli.progress import progress
-from momentum_lab.cli.run import played
+from momentum_lab.cli.run import played, played_beside
 from momentum_lab.errors import InputError
 from momentum_lab.finished import FinishedRun
+from momentum_lab.headless import Timing
 from momentum_lab.recording import writable_file, write_whole
+from momentum_lab.run_file import Run
+from momentum_lab.session import Session
 
 _ENDINGS = ".html (plays in any browser) or .viser (for viser's player)"
 
 
 def record(args: Namespace) -> int:
-    """Run a scenario or a code and write what it looked like.
+    """Run a scenario or a code and write what it looked like, two robots side by side.
 
     Returns:
         0, or 1 if the simulation broke down on the way: the recording then shows what there is.
@@ -28,19 +32,28 @@ def record(args: Namespace) -> int:
     """
     out = _out(args.out)
     chosen = chosen_run(args)
+    run, error = _finished(chosen, played)
     if chosen.scenario.beside is not None:
-        print(f"momentum-lab: {out} shows the first robot", file=sys.stderr)
-    session, timing, stopped = played(chosen)
-    if stopped:
-        raise KeyboardInterrupt
+        beside, problem = _finished(chosen, played_beside)
+        run, error = replace(run, beside=beside), error or problem
 
     from momentum_lab.app.recorder import html_file, viser_file  # loads viser
 
     make = html_file if out.suffix.lower() == ".html" else viser_file
     with progress(out.name) as report:
-        write_whole(out, make(FinishedRun.of(session), report))
+        write_whole(out, make(run, report))
     print(f"recording: {out}")
-    return 0 if timing.error is None else 1
+    return 0 if error is None else 1
+
+
+def _finished(
+    chosen: Run, play: Callable[[Run], tuple[Session, Timing, bool]]
+) -> tuple[FinishedRun, str | None]:
+    """One robot's run, and why it ended before its time; None when it did not."""
+    session, timing, stopped = play(chosen)
+    if stopped:
+        raise KeyboardInterrupt
+    return FinishedRun.of(session), timing.error
 
 
 def _out(given: str | None) -> Path:

@@ -118,6 +118,12 @@ def _second(chosen: Run) -> Second:
     return Second(chosen)
 
 
+def played_beside(chosen: Run) -> tuple[Session, Timing, bool]:
+    """As `played`, for the robot beside the first."""
+    second = _fitting(chosen, _second)
+    return second.session, *_timed(second.session, second.cue, chosen.length)
+
+
 def _beside(second: Second, chosen: Run, out: Path | None) -> Summary:
     """Run the robot beside the first one.
 

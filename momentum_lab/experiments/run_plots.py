@@ -99,7 +99,7 @@ def png(picture: Any) -> bytes:
 def along(run: FinishedRun) -> np.ndarray:
     """Unit vector of the largest push (2,); forward without one."""
     largest = max(run.pushes, key=lambda push: push.impulse, default=None)
-    return np.array([1.0, 0.0]) if largest is None else largest.direction[:2]
+    return np.array([1.0, 0.0]) if largest is None else largest.along
 
 
 def hull_order(corners: np.ndarray) -> np.ndarray:

@@ -147,7 +147,7 @@ def _pushes(run: FinishedRun) -> str:
             f"{push.start:.3f} s",
             f"{push.force or 0.0:.1f} N",
             f"{1e3 * push.duration:.0f} ms",
-            f"{push.direction_deg:g}°",
+            push.towards,
             _where(push),
             push.body or "trunk",
             f"{push.impulse:.2f} N s",

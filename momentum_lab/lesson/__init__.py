@@ -6,7 +6,7 @@ then explains it with an equation whose symbols carry the recorded numbers. See 
 
 from momentum_lab.events import ApplyPush, SetGain, SetPriority
 from momentum_lab.lesson.equation import Equation, Symbol
-from momentum_lab.lesson.measures import fate, of
+from momentum_lab.lesson.measures import at, fate, of
 from momentum_lab.lesson.parts import (
     Bound,
     Choice,
@@ -42,6 +42,7 @@ __all__ = [
     "SetPriority",
     "Stands",
     "Symbol",
+    "at",
     "fate",
     "of",
 ]

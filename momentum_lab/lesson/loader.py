@@ -16,6 +16,7 @@ from momentum_lab.errors import InputError, LabError, LessonError
 from momentum_lab.lesson.parsing import parsed
 from momentum_lab.lesson.parts import (
     CONTROLS,
+    VIEWS,
     Bound,
     Choice,
     Compare,
@@ -223,6 +224,8 @@ def _names(lesson: Lesson) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Every name that a step or a claim uses, and what it may be."""
     runs, measures = tuple(lesson.runs), tuple(lesson.measures)
     for part in (*lesson.steps, *lesson.claims):
+        if isinstance(part, Play | Explain) and part.view is not None:
+            yield part.view, VIEWS
         match part:
             case Play(run=run, controls=controls, beside=beside):
                 yield run, runs

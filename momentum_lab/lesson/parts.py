@@ -19,6 +19,8 @@ Value = float | str
 Values = Mapping[str, Value]
 PUSH_CONTROLS = ("push", "push direction", "push duration", "push height")
 CONTROLS = (*PUSH_CONTROLS, "priority", "robot", "controller", "momenta", "angular goal")
+VIEWS = ("Whole robot", "Feet", "Side", "Front", "Above")
+"""From where a step may want to be looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,12 +118,14 @@ class Play:
         controls: what can be changed: `CONTROLS` or gains of the run's controller.
         beside: a second run, played and shown beside the first. Where both differ only in controller, priority or
             gains, both are there for a hand, too.
+        view: from where it is looked at, one of `VIEWS`; None: from where it was before.
     """
 
     text: str
     run: str
     controls: tuple[str, ...] = ()
     beside: str | None = None
+    view: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,12 +145,14 @@ class Explain:
         run: the run.
         time: when the numbers are read, s.
         equation: its symbols carry them.
+        view: from where it is looked at, one of `VIEWS`; None: from where it was before.
     """
 
     text: str
     run: str
     time: float
     equation: Equation
+    view: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

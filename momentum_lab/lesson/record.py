@@ -87,6 +87,7 @@ class StepRecord(msgspec.Struct, frozen=True):
         controls: what can be changed meanwhile.
         time: when an equation is read first, s.
         equation: what explains.
+        view: from where it is looked at; empty: from where it was before.
     """
 
     kind: str
@@ -103,6 +104,7 @@ class StepRecord(msgspec.Struct, frozen=True):
     controls: tuple[str, ...] = ()
     time: float = 0.0
     equation: EquationRecord | None = None
+    view: str = ""
 
 
 class LessonRecord(msgspec.Struct, frozen=True):
@@ -179,14 +181,14 @@ def _step(step: Step, played: Played) -> StepRecord:
         case Number(low=low, high=high):
             measured = float(record["measured"])
             return StepRecord(kind, text, low=low, high=high, unit=record["unit"], measured=measured)
-        case Play(run=run, beside=beside, controls=controls):
-            return StepRecord(kind, text, run=run, beside=beside or "", controls=controls)
+        case Play(run=run, beside=beside, controls=controls, view=view):
+            return StepRecord(kind, text, run=run, beside=beside or "", controls=controls, view=view or "")
         case Compare():
             return StepRecord(kind, text, measures=record["measured"])
-        case Explain(run=run, time=time, equation=equation):
+        case Explain(run=run, time=time, equation=equation, view=view):
             with located(played.lesson.file, step.text):
                 living = _living(equation, played.runs[run])
-            return StepRecord(kind, text, run=run, time=time, equation=living)
+            return StepRecord(kind, text, run=run, time=time, equation=living, view=view or "")
     return StepRecord(kind, text)
 
 

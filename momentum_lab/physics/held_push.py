@@ -18,7 +18,7 @@ class Pushed:
         held: the one of them that is held now; None: none is.
     """
 
-    all: tuple[Push, ...]
+    all: tuple[Push, ...] = ()
     held: Push | None = None
 
     def with_push(self, push: Push) -> Pushed:

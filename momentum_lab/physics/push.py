@@ -30,6 +30,7 @@ _RANGES = {
     "velocity_change": (0.0, MAX_SPEED, "m/s"),
     "duration": (_ABOVE_ZERO, MAX_DURATION, "s"),
     "direction_deg": (-360.0, 360.0, "degrees"),
+    "elevation_deg": (-90.0, 90.0, "degrees"),
     "start": (0.0, MAX_START, "s"),
     "height": (_ABOVE_ZERO, MAX_HEIGHT, "m"),
 }
@@ -37,7 +38,7 @@ _Reach = Annotated[float, msgspec.Meta(ge=-MAX_REACH, le=MAX_REACH)]
 
 
 class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A horizontal force on one body of the robot.
+    """A force on one body of the robot; a horizontal one unless it says how far it points up.
 
     Its size is given either as a force or as the velocity that it gives to the CoM of the whole robot, which
     means the same on robots of any mass.
@@ -48,6 +49,7 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         duration: how long it lasts, s.
         direction_deg: where it points in the world: 0 along x, forward for a robot that faces there; 90 along y,
             to its left; degrees.
+        elevation_deg: how far it points up from there: 90 straight up, -90 straight down; degrees.
         start: when it begins, s of simulated time.
         height: height of its line of action above the ground, m; None: through the centre of mass.
         body: name of the pushed body in the robot's file, or of any link of its URDF; None: the trunk.
@@ -60,6 +62,7 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     velocity_change: Annotated[float, msgspec.Meta(ge=0.0, le=MAX_SPEED)] | None = None
     duration: Annotated[float, msgspec.Meta(gt=0.0, le=MAX_DURATION)] = 0.1
     direction_deg: Annotated[float, msgspec.Meta(ge=-360.0, le=360.0)] = 0.0
+    elevation_deg: Annotated[float, msgspec.Meta(ge=-90.0, le=90.0)] = 0.0
     start: Annotated[float, msgspec.Meta(ge=0.0, le=MAX_START)] = 0.5
     height: Annotated[float, msgspec.Meta(gt=0.0, le=MAX_HEIGHT)] | None = None
     body: str | None = None
@@ -69,8 +72,29 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     @property
     def direction(self) -> np.ndarray:
         """Unit vector of the force in the world (3,)."""
+        return np.append(self.horizontal_part * self.along, math.sin(math.radians(self.elevation_deg)))
+
+    @property
+    def along(self) -> np.ndarray:
+        """Unit vector over the ground (2,) in which it pushes, or would if it did not point up or down."""
         angle = math.radians(self.direction_deg)
-        return np.array([math.cos(angle), math.sin(angle), 0.0])
+        return np.array([math.cos(angle), math.sin(angle)])
+
+    @property
+    def horizontal_part(self) -> float:
+        """The part of the force that is horizontal, from 0 to 1."""
+        return math.cos(math.radians(self.elevation_deg))
+
+    @property
+    def towards(self) -> str:
+        """Where it points, for people: `90°`, or `90°, 30° up`."""
+        return f"{self.direction_deg:g}°{self.tilt}"
+
+    @property
+    def tilt(self) -> str:
+        """How far it points up or down, for people; nothing for a horizontal one."""
+        way = "up" if self.elevation_deg > 0.0 else "down"
+        return f", {abs(self.elevation_deg):g}° {way}" if self.elevation_deg else ""
 
     @property
     def impulse(self) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
@@ -85,6 +86,23 @@ def standing_posture(
     allowed = _REACHABLE_PLATES
     if places is None:
         places, allowed = [pin.SE3(np.eye(3), place) for place in home_places(robot)], _REACHABLE_HOME
+    where = tuple((place.rotation.tobytes("C"), place.translation.tobytes()) for place in places)
+    return _found(robot, feet, com_outside, where, allowed).copy()
+
+
+# PlaCo never gives back the 2 MB of a robot that it has read, and every start of a scenario asks for two postures.
+@lru_cache(maxsize=32)
+def _found(
+    robot: RobotModel,
+    feet: tuple[str, ...],
+    com_outside: float | None,
+    where: tuple[tuple[bytes, bytes], ...],
+    allowed: str,
+) -> np.ndarray:
+    places = [
+        pin.SE3(np.frombuffer(rotation).reshape(3, 3), np.frombuffer(translation))
+        for rotation, translation in where
+    ]
     goal = _goal(robot, feet, com_outside, places, allowed)
     q = _solve(robot, feet, goal)
     _verify(robot, feet, goal, q)

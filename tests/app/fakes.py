@@ -25,7 +25,10 @@ class FakeHandle:
 
     on_click = on_upload = on_update
 
-    def on_drag(self, button: str, *, modifier: str) -> Callable[[Any], None]:
+    def remove_drag_callback(self, _: str) -> None:
+        self.callbacks.clear()
+
+    def on_drag(self, button: str, *, modifier: str | None) -> Callable[[Any], None]:
         self.dragged = (button, modifier)
         return self.callbacks.append
 

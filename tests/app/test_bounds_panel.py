@@ -46,7 +46,7 @@ def words_of(text: str) -> str:
 def test_a_robot_at_rest_is_held_by_nothing(desk):
     desk.see()
     assert "left foot – right foot – joints –" in words_of(desk.text)
-    assert "linear momentum rate (N) 0 0 0" in words_of(desk.text)
+    assert "linear rate, ahead (N) 0 0 0" in words_of(desk.text)
 
 
 def test_a_push_brings_the_toes_and_what_was_asked_and_granted(desk):
@@ -55,10 +55,46 @@ def test_a_push_brings_the_toes_and_what_was_asked_and_granted(desk):
     desk.see()
     words = words_of(desk.text)
     assert "left foot CoP on the toes right foot CoP on the toes" in words
-    asked, granted, missing = map(float, re.search(r"CoP ahead \(mm\) (\d+) (\d+) (\d+)", words).groups())
     cop = desk.playback.shown["cop_desired"] - desk.playback.shown["cop_admissible"]
-    assert missing == pytest.approx(1e3 * cop[0], abs=1.0)
-    assert asked == pytest.approx(granted + missing, abs=1.0)
+    assert numbers(words, "CoP ahead (mm)")[2] == pytest.approx(1e3 * cop[0], abs=1.0)
+
+
+@pytest.mark.parametrize("direction", [0.0, 180.0, 90.0, -90.0])
+def test_what_was_asked_less_what_was_granted_is_what_is_missing_axis_by_axis(desk, direction):
+    desk.playback.take(ApplyPush(Push(force=120.0, duration=0.1, direction_deg=direction)))
+    desk.playback.tick(100)
+    desk.see()
+    words, sample = words_of(desk.text), desk.playback.shown
+    shown = {}
+    for row, name in enumerate(
+        [f"linear rate, {axis} (N)" for axis in ("ahead", "left", "up")]
+        + [f"angular rate about {axis} (N m)" for axis in ("ahead", "left", "up")]
+    ):
+        asked, granted, missing = shown[name] = numbers(words, name)
+        assert asked - granted == missing
+        # The robot looks along x: its axes are the world's.
+        assert asked == pytest.approx(sample["momentum_rate_desired"][row], abs=2.0)
+        assert granted == pytest.approx(sample["momentum_rate_admissible"][row], abs=2.0)
+    # What is asked for is against the push.
+    towards = shown["linear rate, left (N)" if abs(direction) == 90.0 else "linear rate, ahead (N)"][0]
+    assert (towards < -10.0) == (direction in (0.0, 90.0))
+    assert (towards > 10.0) == (direction in (180.0, -90.0))
+
+
+def test_numbers_keep_their_width():
+    def width(value: float) -> int:
+        goal = Goal("linear rate, ahead", "N", value, 0.0)
+        text = re.sub("<[^>]*>", "|", in_html(Bounds((), (), (goal,), ()), ()))
+        return len(text.split("|linear rate, ahead (N)|")[1].split("|")[1])
+
+    assert len({width(value) for value in (0.0, -0.4, 7.0, -77.0, 777.0, -1234.0, 12345.0)}) == 1
+
+
+def numbers(words: str, name: str) -> list[float]:
+    """Asked, granted and missing of a goal on the screen."""
+    found = re.search(re.escape(name) + 3 * r" (−?\d+)", words)
+    assert found is not None, words
+    return [float(each.replace("−", "-")) for each in found.groups()]
 
 
 def test_it_changes_a_few_times_a_second_and_at_once_in_a_pause(desk):
@@ -81,7 +117,7 @@ def test_it_changes_a_few_times_a_second_and_at_once_in_a_pause(desk):
 
 def test_the_lines_are_always_as_many(desk):
     many = tuple(Active(f"joint_{i}", "torque limit") for i in range(9))
-    goal = Goal("linear momentum rate", "N", 1234.5, np.nan, 1e9)
+    goal = Goal("linear rate, ahead", "N", 1234.5, np.nan)
     nothing = Bounds(((), ()), (), (goal,), ())
     everything = Bounds(((Active("left foot", "slides"),) * 3, ()), many, (goal,), ())
     few, all_of_them = (in_html(bounds, ("left", "right")) for bounds in (nothing, everything))

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from momentum_lab.app.camera import LOOSE, TIGHT, VIEWS, Camera, Opening, camera_pose
+from momentum_lab.app.camera import LOOSE, TIGHT, USUAL, VIEWS, Camera, Opening, camera_pose
+from momentum_lab.lesson import parts
 from tests.app.fakes import FakeClient
 
 FIELD_OF_VIEW = math.radians(32.0)
@@ -63,6 +64,16 @@ def test_looking_sets_the_camera():
     assert client.camera.look_at[:2] == pytest.approx([1.0, 2.0])
     assert client.camera.position[1] < 2.0
     assert client.camera.position[0] == pytest.approx(1.0)
+
+
+def test_lessons_know_every_view():
+    assert tuple(VIEWS) == parts.VIEWS
+
+
+def test_from_above_forward_is_up_and_left_is_left():
+    target, position = camera_pose(VIEWS["Above"], 0.88, np.zeros(2), USUAL)
+    assert seen(np.array([0.3, 0.0, 0.9]), target, position, USUAL.aspect)[1] > 0.2
+    assert seen(np.array([0.0, 0.3, 0.9]), target, position, USUAL.aspect)[0] < -0.1
 
 
 def test_the_view_goes_along_only_when_the_robot_leaves():

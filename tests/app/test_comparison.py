@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import msgspec
 import numpy as np
 import pytest
@@ -149,13 +151,20 @@ def test_running_again_keeps_the_run_before_it():
 def test_what_was_foreseen_stays_until_it_has_come_true():
     desk = Desk(Beside(priority=1.0))
     desk.playback.take(Foresee(PUSH))
+    said = []
     while not desk.foreseen:
+        said.append(desk.comparison.tried(desk.playback.foreseen_part))
         desk.foreseen = desk.playback.look_ahead(50)
     desk.show()
+    assert said[0] == "Trying the push on a copy: 0 %."
+    assert said[15] == "Trying the push on a copy: 50 %."
+    answer = desk.comparison.tried(desk.playback.foreseen_part)
+    assert re.fullmatch(r"Tried, not pushed: priority 0: would .*\. priority 1: would .*\.", answer)
     paths = [desk.node("/foreseen/com"), desk.node("/beside/foreseen/com")]
     desk.playback.take(ApplyPush(PUSH))
     desk.play(1400)
     assert not any(path.removed for path in paths)
+    assert desk.comparison.tried(None) == ""  # by now it has been pushed
     desk.play(200)
     assert all(path.removed for path in paths)
 

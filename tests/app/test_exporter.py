@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import tempfile
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from momentum_lab.app.link import warm_up
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.snapshot import encoded
 from momentum_lab.app.wire import RunTaken, packed, unpacked_answer
+from momentum_lab.beside import Beside
 from momentum_lab.errors import InputError
 from momentum_lab.events import ApplyPush
 from momentum_lab.physics.push import Push
@@ -52,9 +54,14 @@ def test_a_trace_made_elsewhere(playback, taken):
     assert run_of_trace(trace) == taken.run
 
 
+def test_a_trace_needs_no_folder_that_a_process_which_is_stopped_could_leave(taken, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", "/nowhere")
+    assert made("trace", taken).startswith(b"PK")
+
+
 def test_every_other_kind(taken):
     assert decoded("r.json", made("run", taken)) == taken.run
-    assert made("table", taken).startswith(b"time,q.0,")
+    assert made("table", taken).startswith(b"time [s],q/base_x [m],")
     assert b"__VISER_EMBED_DATA__" in made("recording", taken)
     assert Image.open(io.BytesIO(made("plots", taken))).format == "PNG"
 
@@ -78,3 +85,16 @@ def test_a_picture_is_on_white():
     assert picture.shape == (4, 6, 3)
     assert picture[0, 0].tolist() == [10, 20, 30]
     assert picture[3, 5].tolist() == [255, 255, 255]
+
+
+def test_both_robots_are_in_what_is_taken():
+    playback = Playback(Scenario("s", robot="g1", beside=Beside(priority=1.0)))
+    playback.tick(20)
+    playback.take(ApplyPush(Push(force=40.0)))
+    playback.tick(20)
+    assert playback.taken(recording=False).other is None
+    run = finished(unpacked_answer(packed(playback.taken(recording=True))))
+    session = playback.beside.session
+    assert np.array_equal(run.beside.recording.rows(), session.recording.rows(), equal_nan=True)
+    assert (run.choices.priority, run.beside.choices.priority) == (0.0, 1.0)
+    assert run.beside.pushes == session.pushes

@@ -84,7 +84,7 @@ def test_ffmpeg_gets_every_picture_and_what_it_makes_is_the_film(folder, reel):
     log, (width, height) = folder / "log.json", (712, 400)
     program(folder, FAKE.format(log=str(log), stride=width * height * 3))
     tab, fractions = Tab(), []
-    assert film(tab, reel, ViewSettings(), fractions.append) == b"film\x01\x02\x03\x04"
+    assert film(tab, reel, ViewSettings(), 720, fractions.append) == b"film\x01\x02\x03\x04"
     told = json.loads(log.read_text())
     assert told["bytes"] == 4 * width * height * 3
     words = " ".join(told["words"])
@@ -96,7 +96,7 @@ def test_ffmpeg_gets_every_picture_and_what_it_makes_is_the_film(folder, reel):
 def test_the_tab_looks_from_where_it_did_at_a_robot_below_the_floor(folder, reel):
     program(folder, FAKE.format(log=str(folder / "log.json"), stride=1000))
     tab = Tab()
-    film(tab, reel, ViewSettings(), lambda _: None)
+    film(tab, reel, ViewSettings(), 720, lambda _: None)
     assert {(asked["width"], asked["height"], asked["fov"]) for asked in tab.asked} == {(712, 400, 0.5)}
     studio = tab.scene.nodes["/film"]
     for asked in tab.asked:
@@ -110,7 +110,7 @@ def test_without_ffmpeg_nothing_begins(folder, reel):
     with pytest.raises(
         InputError, match=r"^film: got no ffmpeg on the lab's machine; allowed: .*apt install"
     ):
-        film(tab, reel, ViewSettings(), lambda _: None)
+        film(tab, reel, ViewSettings(), 720, lambda _: None)
     assert tab.scene.nodes == {}
     assert tab.asked == []
 
@@ -119,7 +119,7 @@ def test_an_ffmpeg_that_fails_is_quoted(folder, reel):
     program(folder, BROKEN)
     tab = Tab()
     with pytest.raises(InputError, match="failed: Unknown encoder 'mp4'"):
-        film(tab, reel, ViewSettings(), lambda _: None)
+        film(tab, reel, ViewSettings(), 720, lambda _: None)
     assert tab.scene.nodes["/film"].removed
 
 
@@ -132,7 +132,7 @@ def test_a_browser_that_has_gone_and_a_film_that_is_stopped_leave_nothing(folder
         raise stopped
 
     with pytest.raises(InputError) as caught:
-        film(tab, reel, ViewSettings(), stop)
+        film(tab, reel, ViewSettings(), 720, stop)
     assert caught.value is stopped
     assert tab.scene.nodes["/film"].removed
 
@@ -141,7 +141,7 @@ def test_a_browser_that_has_gone_and_a_film_that_is_stopped_leave_nothing(folder
 
     monkeypatch.setattr(tab, "get_render", gone)
     with pytest.raises(InputError, match=r"^picture: got no answer"):
-        film(tab, reel, ViewSettings(), lambda _: None)
+        film(tab, reel, ViewSettings(), 720, lambda _: None)
 
 
 def test_the_real_one_makes_a_film_of_that_length(tmp_path):
@@ -153,3 +153,31 @@ def test_the_real_one_makes_a_film_of_that_length(tmp_path):
     words = [probe, "-v", "error", "-show_entries", "stream=width,height,nb_frames", "-of", "json", path]
     told = json.loads(subprocess.run(words, capture_output=True, check=True, env=os.environ).stdout)
     assert told["streams"] == [{"width": 64, "height": 48, "nb_frames": "25"}]
+
+
+def test_a_small_film_is_small(folder, reel):
+    program(folder, FAKE.format(log=str(folder / "log.json"), stride=1000))
+    tab = Tab()
+    film(tab, reel, ViewSettings(), 360, lambda _: None)
+    assert {(asked["width"], asked["height"]) for asked in tab.asked} == {(640, 360)}
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("position", np.array([1.0, np.nan, 0.0])),
+        ("wxyz", (1.0, 0.0, np.inf, 0.0)),
+        ("fov", np.nan),
+        ("fov", 0.0),
+        ("fov", 4.0),
+        ("image_height", 0),
+        ("image_height", None),
+    ],
+)
+def test_a_camera_that_tells_nonsense_takes_no_film(folder, reel, name, value):
+    program(folder, FAKE.format(log=str(folder / "log.json"), stride=1000))
+    tab = Tab()
+    setattr(tab.camera, name, value)
+    with pytest.raises(InputError, match=r"^camera: got .*; allowed: "):
+        film(tab, reel, ViewSettings(), 720, lambda _: None)
+    assert (tab.asked, tab.scene.nodes) == ([], {})

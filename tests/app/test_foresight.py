@@ -10,13 +10,14 @@ from momentum_lab.app.foresight_scene import ForesightScene, dashes, words_of
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.wire import Fallen, Foreseen, FrameTaken, rows_of
+from momentum_lab.app.worker import Worker
 from momentum_lab.beside import Beside
 from momentum_lab.errors import InputError
-from momentum_lab.events import ApplyPush, Foresee, SetPriority
+from momentum_lab.events import ApplyPush, Foresee, Pause, SetBeside, SetPriority
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
 from tests.app.fakes import FakeClient
-from tests.app.test_worker import played
+from tests.app.test_worker import Pipe, played
 
 PUSH = Push(velocity_change=0.2)
 TICKS = round(1e3 * SECONDS)
@@ -76,6 +77,9 @@ def test_a_push_that_cannot_be_is_refused():
 def test_the_worker_answers_once_and_time_goes_on():
     pipe = played([[FrameTaken()]] * 3 + [[FrameTaken(), Foresee(Push(force=100.0))]] + [[FrameTaken()]] * 10)
     found = [frame for frame in pipe.frames if frame.foreseen]
+    parts = [frame.foreseeing for frame in pipe.frames if frame.foreseeing is not None]
+    assert found[0].foreseeing is None
+    assert parts == sorted(parts)
     assert len(found) == 1
     assert pipe.frames[-1].late_ticks == 0
     assert pipe.frames[-1].truth.push is None
@@ -101,6 +105,28 @@ def test_dashes_leave_gaps_and_what_is_no_number():
     path = np.column_stack([np.arange(9.0), np.zeros(9), np.zeros(9)])
     path[5] = np.nan
     assert dashes(path)[:, 0, 0].tolist() == [0.0, 1.0, 2.0, 6.0]
+
+
+def test_a_pause_tells_how_far_a_try_with_two_robots_is():
+    """Nothing else is sent in a pause: a frame with the part that is done, and then the answers of both."""
+
+    class Busy(Pipe):
+        def poll(self, seconds: float) -> bool:
+            return super().poll(max(seconds, 0.01))
+
+    asked = [[FrameTaken(), SetBeside(Beside(priority=1.0)), Pause()], [FrameTaken(), Foresee(PUSH)]]
+    pipe = Busy([*asked, *([[FrameTaken()]] * 20)], {}, until=103.0)
+    with pytest.raises(EOFError):
+        Worker(pipe, Playback(Scenario("s", robot="g1")), clock=lambda: pipe.now).run()
+    last = next(i for i, frame in enumerate(pipe.frames) if frame.foreseen)
+    parts = [frame.foreseeing for frame in pipe.frames[:last] if frame.foreseeing is not None]
+    assert len(pipe.frames[last].foreseen) == 2
+    assert len(parts) >= 3
+    assert parts == sorted(set(parts))
+
+
+def test_a_robot_that_lies_there_does_not_fall_again():
+    assert words_of(Foreseen(9.0, b"", Fallen(3.25, "x")), 0.5) == "has fallen already"
 
 
 def test_a_fall_is_told_from_the_push_on():

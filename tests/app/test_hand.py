@@ -11,9 +11,9 @@ import msgspec
 import numpy as np
 import pytest
 
-from momentum_lab.app import hand as room
-from momentum_lab.app.hand import Hand, Note, Reach
+from momentum_lab.app.hand import Hand, Note
 from momentum_lab.app.pull import Scale
+from momentum_lab.app.pulling import Pulling, Reach
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot
@@ -43,21 +43,20 @@ class Desk:
         self.panel.set_robot(loaded)
         self.pushes: tuple = ()
         settings = ViewSettings()
-        self.hand = Hand(
-            self.client, self.panel, settings, self.posted.append, self.told.append, lambda: self.pushes
-        )
+        pulling = Pulling(self.client, self.panel, settings, self.posted.append, lambda: self.pushes)
+        self.hand = Hand(self.panel.hand, pulling, self.told.append)
         body = RobotScene(self.client, loaded, standing_posture(robot))
         self.reach = Reach(body, loaded, SIZE, np.array(offset))
         self.trunk = trunk
-        self.scale = Scale.of(robot, SIZE, settings.arrow_scale, self.panel.strongest)
+        self.scale = Scale.of(robot, SIZE, settings.arrow_scale, self.panel.form.strongest)
 
-    def drag(self, phase: str, x: float, y: float, **changes) -> None:
-        """One event of a hand that is so far from where it has grabbed, m."""
+    def drag(self, phase: str, x: float, y: float, z: float = 0.0, **changes) -> None:
+        """One event of a hand that is so far from where it has grabbed, m; the picture is two metres high."""
         start = GRABBED + self.reach.offset
-        note = Note(self.reach, self.trunk, phase, tuple(start), tuple(start + [x, y, 0.0]), ABOVE)
-        for name, value in changes.items():
-            object.__setattr__(note, name, value)
-        self.hand.note(note)
+        told = {"start": tuple(start), "end": tuple(start + [x, y, z]), "eye": ABOVE, **changes}
+        on_screen = ((0.5, 0.5), (0.5 + 0.25 * (x + y), 0.5 - 0.5 * z), (1600, 800))
+        places = (told["start"], told["end"], told["eye"])
+        self.hand.note(Note(self.reach, self.trunk, phase, places, on_screen))
         self.hand.act()
 
     def set(self, label: str, value: object) -> None:
@@ -71,11 +70,6 @@ class Desk:
 @pytest.fixture
 def desk(talos) -> Desk:
     return Desk(talos)
-
-
-@pytest.fixture(autouse=True)
-def at_once(monkeypatch):
-    monkeypatch.setattr(room, "_SETTLED", 0.0)
 
 
 def test_letting_go_pushes_with_the_force_of_the_arrow(desk):
@@ -119,19 +113,52 @@ def test_another_body_has_no_grabbed_point(desk):
     assert not desk.client.gui.widgets["where it was grabbed"].visible
 
 
-def test_back_where_it_began_there_is_no_push(desk):
-    desk.drag("start", 0.2, 0.0)
-    desk.drag("update", 0.005, 0.0)
+def test_back_where_it_began_there_is_no_push_and_both_ends_of_the_arrow_say_so(desk):
+    home = lambda: desk.client.scene.nodes["/hand/home"]  # noqa: E731
+    desk.drag("start", 0.03, 0.0)
+    assert not home().visible
+    desk.drag("update", 0.2, 0.0)
+    assert (home().visible, home().text) == (True, "back here: no push")
+    desk.drag("update", 0.04, 0.0)  # 4 cm are 16 of 800 pixels, and 27 N
     assert desk.label.text == "let go: no push"
-    desk.drag("end", 0.005, 0.0)
+    assert not home().visible
+    desk.drag("end", 0.04, 0.0)
     assert desk.posted == []
+    desk.drag("start", 0.04, 0.0)
+    desk.drag("end", 0.04, 0.0)  # a hand that has never been further away pulls gently
+    assert desk.posted[0].push.force == round(0.04 * desk.scale.newtons_per_metre)
+
+
+@pytest.mark.parametrize("way", ["pulse", "hold"])
+def test_a_hand_can_give_up(desk, way):
+    desk.set("by hand", way)
+    desk.drag("start", 0.2, 0.0)
+    desk.drag("update", 0.3, 0.0)
+    desk.hand.give_up()
+    assert way == "hold" or desk.label.removed
+    desk.drag("update", 0.4, 0.0)
+    desk.drag("end", 0.4, 0.0)
+    assert [type(event) for event in desk.posted] == [HoldPush, HoldPush, LetGo] * (way == "hold")
+
+
+def test_up_and_sideways_pulls_up(desk):
+    desk.set("pulls", "up and sideways")
+    eye = (4.0, 0.0, 1.1)
+    desk.drag("start", 0.0, 0.1, eye=eye)
+    desk.drag("update", 0.0, 0.1, 0.1, eye=eye)
+    assert_close(desk.label.position, GRABBED + [0.0, 0.1, 0.1], 1e-6)
+    desk.drag("end", 0.0, 0.1, 0.1, eye=eye)
+    push = desk.posted[0].push
+    assert (push.direction_deg, push.elevation_deg) == (90.0, 45.0)
+    assert push.force == round(math.hypot(0.1, 0.1) * desk.scale.newtons_per_metre)
+    assert desk.panel.push() == push
 
 
 def test_no_hand_is_stronger_than_the_slider(desk):
     desk.drag("start", 50.0, 0.0)
-    assert desk.label.text == f"{desk.panel.strongest:.0f} N on trunk, the most"
+    assert desk.label.text == f"{desk.panel.form.strongest:.0f} N on trunk, the most"
     desk.drag("end", 50.0, 0.0)
-    assert desk.posted[0].push.force == desk.panel.strongest
+    assert desk.posted[0].push.force == desk.panel.form.strongest
 
 
 def test_a_held_push_follows_the_hand_and_ends_with_it(desk):
@@ -144,7 +171,7 @@ def test_a_held_push_follows_the_hand_and_ends_with_it(desk):
     assert [type(event) for event in desk.posted] == [HoldPush, HoldPush, HoldPush, LetGo]
     pushes = [event.push for event in desk.posted[:-1]]
     assert [push.direction_deg for push in pushes] == [0.0, 0.0, 90.0]
-    assert pushes[1].force == pytest.approx(2.0 * pushes[0].force, abs=0.02 * desk.panel.strongest)
+    assert pushes[1].force == pytest.approx(2.0 * pushes[0].force, abs=0.02 * desk.panel.form.strongest)
     assert all(push.point == pushes[0].point for push in pushes)
 
 
@@ -171,7 +198,7 @@ def test_what_was_held_can_be_repeated_piece_by_piece(desk):
 
 def test_in_a_pause_a_hold_would_last_no_time_and_is_a_pulse(desk):
     desk.set("by hand", "hold")
-    desk.hand.playing = False
+    desk.hand.follow(playing=False)
     desk.drag("start", 0.2, 0.0)
     assert desk.label.text.endswith("waits for play")
     desk.drag("end", 0.2, 0.0)
@@ -212,7 +239,9 @@ def test_a_hold_that_goes_wrong_ends(desk):
     assert [type(event) for event in desk.posted] == [HoldPush, LetGo]
 
 
-@pytest.mark.parametrize(("label", "value"), [("by hand", "throw"), ("duration (ms)", math.nan)])
+@pytest.mark.parametrize(
+    ("label", "value"), [("by hand", "throw"), ("pulls", "round"), ("duration (ms)", math.nan)]
+)
 def test_what_no_widget_offers_is_told_and_no_push(desk, label, value):
     desk.client.gui.widgets[label].value = value
     desk.drag("start", 0.2, 0.0)
@@ -227,13 +256,27 @@ def test_moves_and_ends_of_nothing_are_nothing(desk):
     assert (desk.posted, desk.told) == ([], [])
 
 
-def test_only_shift_and_the_left_button_grab_and_events_stay_in_order(desk):
+def test_without_shift_a_drag_pulls_while_that_is_switched_on(desk):
     desk.hand.reach(desk.reach)
     (mesh,) = [node for node in desk.client.scene.nodes.values() if node.method == "add_mesh_simple"]
     assert mesh.dragged == ("left", "shift")
+    for modifier in (None, "shift"):
+        desk.hand.toggle()
+        desk.hand.follow(playing=True)
+        assert mesh.dragged == ("left", modifier)
+        assert len(mesh.callbacks) == 1
+    desk.reach.body.remove()
+    desk.set("drag pushes the robot", True)
+    desk.hand.follow(playing=True)
+    assert mesh.dragged == ("left", "shift")  # viser refuses new callbacks of what has gone
+
+
+def test_events_stay_in_order(desk):
+    desk.hand.reach(desk.reach)
+    (mesh,) = [node for node in desk.client.scene.nodes.values() if node.method == "add_mesh_simple"]
 
     async def drag() -> None:
-        camera = SimpleNamespace(position=ABOVE)
+        camera = SimpleNamespace(position=ABOVE, image_width=1600, image_height=800)
         for phase, x in (("start", 0.01), *(("update", 0.002 * i) for i in range(50)), ("end", 0.2)):
             await mesh.callbacks[0](
                 SimpleNamespace(
@@ -241,6 +284,8 @@ def test_only_shift_and_the_left_button_grab_and_events_stay_in_order(desk):
                     phase=phase,
                     start_position=tuple(GRABBED),
                     end_position=tuple(GRABBED + [x, 0.0, 0.0]),
+                    start_screen_pos=(0.5, 0.5),
+                    end_screen_pos=(0.5 + 0.25 * x, 0.5),
                 )
             )
         await asyncio.get_running_loop().shutdown_default_executor()

@@ -30,11 +30,13 @@ class Desk:
         )
         status = FakeHandle(toggle=lambda: note("toggle"))
         tabs = FakeHandle(open=lambda index: note(f"tab {index}"))
-        add_keys(self.client, note, push.apply, push, status, tabs, runs)
+        hand = FakeHandle(toggle=lambda: note("drag pushes"), give_up=lambda: note("give up"))
+        add_keys(self.client, note, push.apply, push, status, tabs, runs, hand)
 
-    def _add_command(self, label: str, hotkey: str | None = None) -> FakeHandle:
+    def _add_command(self, label: str, hotkey: str | None = None, modifier: str = "") -> FakeHandle:
         command = FakeHandle()
-        command.on_trigger = lambda act: self.commands.update({label: (hotkey, act)})
+        key = hotkey and modifier + hotkey
+        command.on_trigger = lambda act: self.commands.update({label: (key, act)})
         return command
 
     def press(self, key: str) -> None:
@@ -47,7 +49,7 @@ def desk() -> Desk:
 
 
 def test_what_each_key_does(desk):
-    for key in "PKJLR12345FMNG":
+    for key in (*"PKJLR12345FMNGTZ", "shiftZ"):
         desk.press(key)
     assert desk.done == [
         "push",
@@ -60,6 +62,9 @@ def test_what_each_key_does(desk):
         "keep",
         "same pushes",
         "ghost",
+        "drag pushes",
+        "give up",
+        "give up",
     ]
 
 
@@ -67,7 +72,7 @@ def test_no_key_is_used_twice_and_none_that_widgets_need(desk):
     hotkeys = [hotkey for hotkey, _ in desk.commands.values() if hotkey]
     assert len(set(hotkeys)) == len(hotkeys)
     assert not set(hotkeys) & set("WASDQE")
-    assert set(hotkeys) == set("PKJLRB12345FMNGH")
+    assert set(hotkeys) == {*"PKJLRB12345FMNGHTZ", "shiftZ"}
 
 
 def test_a_key_that_is_held_down_acts_once(desk, monkeypatch):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
 import pytest
 
-from momentum_lab.app import library
+from momentum_lab.app import apart
 from momentum_lab.app.library import Library
 from momentum_lab.errors import LabError
 from momentum_lab.lesson.loader import lesson_files
@@ -28,6 +29,28 @@ def test_lesson_that_is_no_python_is_in_the_list_with_its_error(tmp_path: Path) 
     (entry,) = Library(tmp_path).entries()
     assert entry.title == path.name
     assert entry.error.startswith(f"{path}:{line_of(path, 'STEPS = = (')}: got ")
+
+
+def test_list_is_marked_once_the_scripts_have_been_loaded(tmp_path: Path) -> None:
+    path = written(tmp_path, ("CLAIMS = (", "CLAIMED = ("))
+    written(tmp_path).rename(tmp_path / "02_sound.py")
+    written(tmp_path, ("RUNS =", "import os; os._exit(3)\nRUNS =")).rename(tmp_path / "03_ends.py")
+    written(tmp_path, ("CLAIMS = (", "CLAIMED = ("))
+    lessons = Library(tmp_path)
+    assert not any(entry.error for entry in lessons.entries())
+    first, sound, last = lessons.look_through()
+    assert re.match(rf"{re.escape(str(path))}:\d+: got no CLAIMS", first.error)
+    assert (first.title, sound.error) == ("Leaning in", "")
+    assert "got exit code 3; allowed: a script that runs" in last.error
+    assert lessons.entries() == [first, sound, last]
+
+
+def test_script_that_has_been_mended_is_marked_no_more(tmp_path: Path) -> None:
+    path = written(tmp_path, ("CLAIMS = (", "CLAIMED = ("))
+    lessons = Library(tmp_path)
+    assert lessons.look_through()[0].error
+    os.utime(written(tmp_path), ns=(0, path.stat().st_mtime_ns + 1))
+    assert [entry.error for entry in lessons.look_through()] == [""]
 
 
 def test_rehearsal_shows_what_a_run_without_a_screen_shows(tmp_path: Path) -> None:
@@ -56,7 +79,7 @@ def test_whatever_is_wrong_is_told_with_file_and_line(tmp_path: Path, change: tu
 
 def test_script_that_never_ends_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = written(tmp_path, ("RUNS =", "while True: pass\nRUNS ="))
-    monkeypatch.setattr(library, "_PATIENCE", 0.5)
+    monkeypatch.setattr(apart, "_PATIENCE", 0.5)
     with pytest.raises(LabError, match=r"01_leaning_in\.py:1: got no end within 0\.5 s"):
         Library(tmp_path).rehearse(path, "g1")
 

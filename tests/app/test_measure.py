@@ -1,4 +1,4 @@
-"""The whole measurement in its 20 s form: the real server, two clients, and believable figures."""
+"""The whole measurement in a short form: the real server, two clients, and believable figures."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from momentum_lab.app.measure import Course, measure_app
 
 pytestmark = pytest.mark.quiet
 
-# A machine that runs other things at the same time may be this much slower than the bounds of the report.
-SECONDS = 20.0
+# Time for eight pushes. A machine that runs other things may be this much slower than the bounds of the report.
+SECONDS = 12.0
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +63,7 @@ def test_nothing_is_sent_while_nothing_changes(measured):
 
 
 def test_a_second_client_does_not_stop_the_first(measured):
-    assert measured.aged == pytest.approx(120.0)
+    assert measured.aged == pytest.approx(6.0 * SECONDS)
     assert 0.0 < measured.stall < 1.5
     assert measured.stall < measured.first_picture_aged < 30.0
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from momentum_lab.app.cursor import ABOVE, BELOW
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.series import WINDOW
 from tests.app.fakes import FakeGui
@@ -248,3 +249,33 @@ def test_lines_never_outnumber_columns(talos, pushed):
     plots.add_beside(rows[:20])
     plots.begin(talos, pushed.recording.layout)
     plots.add(rows[:20])
+
+
+def test_an_instant_that_is_looked_at_is_a_line_and_what_came_after_it_stays(desk, pushed):
+    rows = pushed.recording.rows(20)
+    desk.plots.add(rows)
+    desk.plots.draw()
+    whole = [handle.data for handle in desk.handles]
+    assert all((data[-2][:-1] == BELOW).all() for data in whole)  # nobody looks back
+    desk.plots.look_at(float(rows[20][0]))
+    for handle, before in zip(desk.handles, whole, strict=True):
+        assert len(handle.series) == len(handle.data)
+        curves = zip(handle.data[1:-2], before[1:-2], strict=True)
+        assert all(np.array_equal(now, then, equal_nan=True) for now, then in curves)
+        time, line = handle.data[0][:-1], handle.data[-2][:-1]
+        assert (line == np.where(time < rows[20][0], BELOW, ABOVE)).all()
+        assert min(handle.scales["push"]["range"]) > BELOW
+        assert max(handle.scales["push"]["range"]) < ABOVE
+    desk.plots.look_at(np.inf)
+    assert (desk.handles[0].data[-2][:-1] == BELOW).all()
+
+
+def test_of_a_long_run_the_window_is_around_the_instant(desk, pushed):
+    rows = standing_still(pushed, 30.0)
+    desk.plots.add(rows)
+    for instant in (0.0, 12.0, 29.9):
+        desk.plots.look_at(instant)
+        x = desk.handles[0].data[0]
+        assert x[0] - 0.01 <= instant <= x[-1]
+        assert x[-1] - x[0] == pytest.approx(WINDOW, abs=0.03)
+        assert x[-1] == pytest.approx(min(30.0, max(WINDOW, instant + WINDOW / 2)), abs=0.03)

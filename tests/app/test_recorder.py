@@ -67,14 +67,14 @@ def scene_at(file: dict, time: float) -> dict[str, dict]:
     return nodes
 
 
-def joints_in_world(nodes: dict[str, dict]) -> dict[int, pin.SE3]:
-    """Joint -> placement, out of the chain of nodes above it."""
+def joints_in_world(nodes: dict[str, dict], root: str = "/robot") -> dict[int, pin.SE3]:
+    """Joint -> placement below a node, out of the chain of nodes above it."""
     placed = {}
     for name in nodes:
-        if not re.fullmatch(r"/robot(/\d+)+", name):
+        if not re.fullmatch(rf"{root}(/\d+)+", name):
             continue
-        here, path = pin.SE3.Identity(), "/robot"
-        for joint in name.split("/")[2:]:
+        here, path = pin.SE3.Identity(), root
+        for joint in name.removeprefix(root).split("/")[1:]:
             path += f"/{joint}"
             w, x, y, z = nodes[path].get("wxyz", (1.0, 0.0, 0.0, 0.0))
             at = np.array(nodes[path].get("position", (0.0, 0.0, 0.0)))
@@ -86,8 +86,9 @@ def joints_in_world(nodes: dict[str, dict]) -> dict[int, pin.SE3]:
 def test_it_has_all_pictures_and_lasts_as_long_as_the_run(recorded):
     file = decoded(recorded)
     times = sorted({round(when, 6) for when, _ in file["messages"]})
-    assert times == pytest.approx([0.04 * i for i in range(PICTURES)])
-    assert file["durationSeconds"] == pytest.approx(0.04 * PICTURES)
+    assert times == [i / 25 for i in range(PICTURES)]
+    assert sorted({when for when, _ in file["messages"]}) == times  # not even an ulp off
+    assert file["durationSeconds"] == PICTURES / 25
 
 
 @pytest.mark.parametrize("picture", [0, 5, 12])
@@ -165,3 +166,51 @@ def test_a_run_without_samples_is_refused(run):
     empty = replace(run, recording=Recording(run.recording.layout, 1))
     with pytest.raises(InputError, match=r"^recording: got no samples; allowed: a run of at least one tick"):
         viser_file(empty)
+
+
+@pytest.fixture(scope="module")
+def pair(g1: RobotModel) -> FinishedRun:
+    """Two robots that are pushed alike and keep different momenta; the second comes 0.1 s later and stops earlier."""
+    push = Push(force=60.0, duration=0.1, start=0.1)
+    runs = []
+    for priority, ticks in ((0.0, 400), (1.0, 300)):
+        session = Session(Scenario("two", robot="g1", priority=priority, pushes=(push,)), g1, 400)
+        for _ in range(ticks):
+            session.tick()
+        runs.append(FinishedRun.of(session))
+    late = Recording(runs[1].recording.layout, 200)
+    for row in runs[1].recording.rows()[100:]:
+        late.next_row()[:] = row
+    return replace(runs[0], beside=replace(runs[1], recording=late))
+
+
+def test_two_robots_stand_side_by_side_each_where_it_was(pair):
+    file = decoded(viser_file(pair))
+    nodes = scene_at(file, 0.24)
+    offset = nodes["/beside"]["position"]
+    assert np.linalg.norm(offset) == pytest.approx(1.5 * pair.recording.column("com")[0, 2])
+    assert offset[1] == pytest.approx(np.linalg.norm(offset))  # to the left of one that faces forward
+    for run, root, row in ((pair, "/robot", 240), (pair.beside, "/beside/robot", 140)):
+        model, data = run.robot.model, run.robot.model.createData()
+        pin.forwardKinematics(model, data, run.recording.column("q")[row])
+        placed = joints_in_world(nodes, root)
+        assert sorted(placed) == list(range(1, model.njoints))
+        for joint, placement in placed.items():
+            assert np.abs(placement.homogeneous - data.oMi[joint].homogeneous).max() < 1e-9
+    marks = {name for name in nodes if name.startswith("/beside/marks/")}
+    assert {"/beside/marks/com", "/beside/marks/push"} <= marks
+
+
+def test_the_second_robot_is_there_from_when_it_was_and_both_have_names(pair):
+    reel = Reel.of(pair, LoadedRobot(pair.robot, (), pair.recording.layout))
+    time = reel.robot.layout.slices["time"]
+    assert reel.side.since == 3
+    assert reel.side.reel.rows[3:7, time].ravel() == pytest.approx(reel.rows[3:7, time].ravel())
+    assert reel.side.reel.rows[8:, time].ravel() == pytest.approx([0.299, 0.299])  # where it stopped
+    assert reel.side.names == ("priority 0", "priority 1")
+    messages = decoded(viser_file(pair))["messages"]
+    shown = [(when, m) for when, m in messages if m.get("name") == "/beside" and "visible" in m]
+    assert [(when, m["visible"]) for when, m in shown] == [(0.0, False), (0.12, True)]
+    assert (
+        "<title>two · g1 · computed-torque · priority 0 beside priority 1</title>" in html_file(pair).decode()
+    )

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from momentum_lab.app.kept_before import WAY_BACK
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.share_panel import SharePanel, Sharing, file_name, opened_words
 from momentum_lab.app.wire import Opened, RunTaken
@@ -27,6 +28,7 @@ class Desk:
         self.playback = Playback(Scenario("My run!", robot="g1"))
         self.address = FakeHandle(value="")
         self.lines, self.stops = [], False
+        self.said, self.warned, self.taken_back = [], [], []
         sharing = Sharing(
             self.playback.taken,
             self.opened.append,
@@ -35,17 +37,20 @@ class Desk:
             lambda: b"picture",
             self.film,
             URL,
+            lambda: self.taken_back.append(True),
+            self.said.append,
+            self.warned.append,
         )
         self.panel = SharePanel(self.gui, sharing, self.address)
 
-    def film(self, taken: RunTaken, report: Callable[[float], None]) -> bytes:
+    def film(self, taken: RunTaken, height: int, report: Callable[[float], None]) -> bytes:
         for done in (0.25, 0.5, 1.0):
             report(done)
             self.lines.append(self.gui.html[-1].content)
             if self.stops:
                 assert self.gui.widgets["Stop the film"].visible
                 self.do("Stop the film")
-        return taken.rows[:3]
+        return b"film of %d" % height
 
     def do(self, label: str, value: object = True) -> None:
         self.gui.widgets[label].set_by_person(value)
@@ -82,6 +87,40 @@ def test_codes_are_opened_from_the_field_and_from_the_address(desk):
     desk.address.set_by_person(to_code(run))
     assert desk.opened == [run, run]
     assert desk.told == []
+
+
+@pytest.mark.parametrize("code", ["hello", "lab1-AAAA", "lab9-x"])
+def test_an_address_that_opens_nothing_says_so_until_it_is_closed(desk, code):
+    desk.address.set_by_person(code)
+    (words,) = desk.warned
+    assert words.startswith("The address of this page opens no run. code: got ")
+    assert (desk.told, desk.opened) == ([], [])
+
+
+def test_a_code_of_the_run_before_does_not_stay(desk):
+    desk.do("Make a code")
+    assert desk.code
+    desk.gui.widgets["code"].value = to_code(Run(Scenario("other")))
+    desk.do("Open the code")
+    assert desk.gui.html[1].content == ""
+    assert desk.gui.widgets["code"].value == ""
+
+
+def test_what_was_before_is_told_once_and_can_be_taken_back(desk):
+    button, truth = desk.gui.widgets["Take back"], desk.playback.truth(1.0)
+    desk.panel.follow(truth, ())
+    assert not button.visible
+    for _ in range(3):
+        desk.panel.follow(truth, ("mine until 7.02 s",))
+    assert desk.said == [f"My run! is open now. Your run (mine until 7.02 s) is kept: {WAY_BACK}."]
+    assert button.visible
+    desk.do("Make a code")
+    button.set_by_person(True)
+    assert desk.taken_back == [True]
+    assert desk.gui.html[1].content == ""  # a code of the opened run
+    desk.panel.follow(truth, ())
+    assert not button.visible
+    assert len(desk.said) == 1
 
 
 def test_files_are_opened(desk):
@@ -121,13 +160,14 @@ def test_the_run_file_and_the_picture_are_sent(desk):
     assert not desk.gui.widgets["Download"].disabled
 
 
-def test_a_film_says_how_far_it_is(desk):
+@pytest.mark.parametrize(("what", "height"), [("film (.mp4)", 720), ("small film (.mp4)", 360)])
+def test_a_film_says_how_far_it_is(desk, what, height):
     desk.playback.tick(5)
-    desk.gui.widgets["file"].value = "film (.mp4)"
+    desk.gui.widgets["file"].value = what
     desk.do("Download")
     assert [re.findall(r"\d+ %", line) for line in desk.lines] == [["25 %"], ["50 %"], ["100 %"]]
-    assert list(desk.sent) == ["my-run-g1.mp4"]
-    assert len(desk.sent["my-run-g1.mp4"]) == 3
+    assert all("0 s to go" in line for line in desk.lines)
+    assert desk.sent == {"my-run-g1.mp4": b"film of %d" % height}
     assert not desk.gui.html[-1].visible
     assert not desk.gui.widgets["Stop the film"].visible
 

@@ -61,6 +61,12 @@ def test_it_invites_before_the_first_push_and_tells_the_last_one_after_it(bar):
     assert "50 N for 100 ms 30° from forward on the left hand." in text
 
 
+def test_a_push_that_is_tried_is_told_instead_of_the_invitation(bar):
+    bar.bar.follow(bar.truth, STANDING, 0.1, "Trying the push on a copy: 40 %.")
+    assert "Trying the push on a copy: 40 %." in bar.text
+    assert INVITATION not in bar.text
+
+
 def test_a_short_saturation_stays_readable(bar):
     bar.show(STANDING)
     assert "angular goal gives way by 88 N m" in bar.show(BORDER)
@@ -152,6 +158,37 @@ def test_looking_back(bar):
     assert not branch.visible
 
 
+def test_pushes_are_marked_along_the_slider(bar):
+    bar.show(STANDING, seconds=4.0, pushed=(1.0, 3.0), playing=False)
+    assert places(bar) == [pytest.approx(40.0), pytest.approx(80.0)]  # 3 s and 1 s before the end, of 5
+    bar.show(STANDING, seconds=-2.0, behind=2.0)
+    assert places(bar) == [pytest.approx(40.0), pytest.approx(80.0)]  # looking back moves no push
+    bar.show(STANDING, seconds=98.0, behind=0.0, pushed=(1.0, 70.0))
+    assert places(bar) == [pytest.approx(50.0)]  # the first is out of reach
+    seen = [places(bar) for _ in range(40) if bar.show(STANDING, 0.025, playing=True)]
+    assert 1 < len({tuple(each) for each in seen}) <= 3  # about once a second while time runs
+
+
+def places(bar: Bar) -> list[float]:
+    """Where pushes are marked, in percent of the slider."""
+    (strip,) = (handle.content for handle in bar.gui.html if 'class="lab-strip"' in handle.content)
+    return [float(place) for place in re.findall(r"data-push[^>]*left:([0-9.]+)%", strip)]
+
+
+def test_what_going_on_would_forget_is_on_the_button(bar):
+    button = bar.gui.widgets["Go on from here  (B)"]
+    bar.show(STANDING, behind=1.0, playing=False)
+    assert button.label == "Go on from here  (B)"
+    bar.show(STANDING, forgotten=(1.5,))
+    assert button.label == "Go on without 1 later push  (B)"
+    bar.show(STANDING, forgotten=(1.5, 2.0, 3.0, 4.0, 5.0))
+    assert button.label == "Go on without 5 later pushes  (B)"
+    assert "Forgotten: pushed at 1.50 s, 2.00 s, 3.00 s and 2 more." in button.hint
+    bar.show(STANDING, behind=0.0, forgotten=())
+    assert button.label == "Go on from here  (B)"
+    assert "Forgotten" not in button.hint
+
+
 def test_the_slider_reaches_as_far_back_as_there_is(bar):
     slider = bar.gui.widgets["look back (s)"]
     bar.show(STANDING, seconds=4.0)
@@ -159,6 +196,6 @@ def test_the_slider_reaches_as_far_back_as_there_is(bar):
     bar.show(STANDING, seconds=3.0)
     assert slider.min == -10.0
     bar.show(STANDING, seconds=0.0, behind=4.0)
-    assert slider.min == -20.0
+    assert slider.min == -15.0
     bar.show(STANDING, seconds=200.0, behind=0.0)
     assert slider.min == -60.0

@@ -9,6 +9,7 @@ from momentum_lab.app.differences import differences, names_of, with_choices
 from momentum_lab.app.ghost import Ghost, KeptRun
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.robots import LoadedRobot
+from momentum_lab.app.runs_panel import table
 from momentum_lab.app.story import Story
 from momentum_lab.beside import Beside
 from momentum_lab.events import ApplyPush
@@ -52,6 +53,29 @@ def test_facts_are_those_of_the_summary(fig7):
 def test_at_rest_after_the_last_time_that_the_com_was_fast(fig7):
     facts = story_of(fig7.session).facts(fig7.truth(1.0))
     assert facts.settled_after == pytest.approx(settled_after(fig7.session) - 0.2, abs=0.021)
+
+
+@pytest.mark.parametrize("second", [0.05, 0.6])
+def test_times_count_from_the_latest_push_before(second):
+    """A light push, and a second later one that it withstands or that fells it."""
+    playback = Playback(Scenario("s", robot="g1"))
+    playback.take(ApplyPush(Push(velocity_change=0.02)))
+    playback.tick(999)
+    playback.take(ApplyPush(Push(velocity_change=second)))
+    playback.tick(2500)
+    session, fall = playback.session, playback.session.fall
+    if fall is not None:
+        playback.take(ApplyPush(Push(velocity_change=0.01)))  # is none before the fall
+        playback.tick(100)
+    truth = playback.truth(1.0)
+    facts = story_of(session).facts(truth)
+    assert (fall is not None) == (second > 0.3)
+    if fall is not None:
+        assert facts.fall_time == pytest.approx(fall.time - 1.0)
+    else:
+        assert facts.settled_after == pytest.approx(settled_after(session) - 1.0, abs=0.021)
+    text = table([("A", facts), ("now", facts)], {})
+    assert "seconds count from the latest push before" in text
 
 
 def test_a_branch_replaces_what_came_after_it(pushed):

@@ -12,6 +12,7 @@ from momentum_lab.app.wire import (
     Frame,
     FrameTaken,
     FrameWanted,
+    TakeBack,
     packed,
     rows_of,
     unpacked_frame,
@@ -55,7 +56,9 @@ EVENTS = [
 ]
 
 
-@pytest.mark.parametrize("message", [*EVENTS, FrameTaken(), FrameWanted()], ids=lambda m: type(m).__name__)
+@pytest.mark.parametrize(
+    "message", [*EVENTS, FrameTaken(), FrameWanted(), TakeBack()], ids=lambda m: type(m).__name__
+)
 def test_messages(message):
     assert unpacked_message(packed(message)) == message
 

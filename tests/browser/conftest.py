@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, sync_playwright
 
-from tests.browser.lab_page import LabPage
+from tests.browser.lab_page import LOW, LabPage
 
 OUTPUT = Path(__file__).parent / "output"
 # Chromium without a graphics card draws WebGL in software; plots that it "accelerates" take all of its time.
@@ -40,11 +40,9 @@ from momentum_lab.app.profile import PROFILES
 from momentum_lab.app.server import serve
 from momentum_lab.scenario import load_scenario
 if __name__ == "__main__":
-    profile, scenario, *lesson = sys.argv[1:]
-    first = Path(lesson[0]) if lesson else None
-    library = Library(first.parent) if first else None
-    start = load_scenario(scenario)
-    serve(start, port=0, open_browser=False, profile=PROFILES[profile], library=library, lesson=first)
+    profile, scenario, *lessons = sys.argv[1:]
+    library = Library(Path(lessons[0])) if lessons else None
+    serve(load_scenario(scenario), port=0, open_browser=False, profile=PROFILES[profile], library=library)
 """
 
 
@@ -56,11 +54,11 @@ class Served:
     url: str
 
 
-def serve(folder: Path, profile: str, scenario: str = "stand", *lesson: Path) -> Iterator[Served]:
+def serve(folder: Path, profile: str, scenario: str = "stand", *lessons: Path) -> Iterator[Served]:
     script = folder / "lab.py"
     script.write_text(SERVE)
     process = subprocess.Popen(
-        [sys.executable, script, profile, scenario, *lesson], stdout=subprocess.PIPE, text=True
+        [sys.executable, script, profile, scenario, *lessons], stdout=subprocess.PIPE, text=True
     )
     try:
         yield Served(process, process.stdout.readline().split()[2])
@@ -74,14 +72,14 @@ def serve(folder: Path, profile: str, scenario: str = "stand", *lesson: Path) ->
 
 @pytest.fixture(scope="session")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """The lab as tests can bear it: no shadows, no environment map."""
-    yield from serve(tmp_path_factory.mktemp("test"), "test")
+    """The lab as tests can bear it: no shadows, no environment map, a robot of few triangles."""
+    yield from serve(tmp_path_factory.mktemp("test"), "coarse")
 
 
 @pytest.fixture
-def served_for_people(tmp_path: Path) -> Iterator[Served]:
-    """The lab as people see it."""
-    yield from serve(tmp_path, "normal")
+def served_in_detail(tmp_path: Path) -> Iterator[Served]:
+    """The lab without shadows, but with all of its robot."""
+    yield from serve(tmp_path, "test")
 
 
 @pytest.fixture(scope="session")
@@ -108,8 +106,8 @@ def open_page(browser: Browser) -> Iterator[Opener]:
         if message.type == "error" and not message.text.startswith((CROSSED, PASSIVE)):
             errors.append(message.text)
 
-    def open_page(url: str, width: int = 1280, height: int = 800) -> LabPage:
-        page = browser.new_page(viewport={"width": width, "height": height})
+    def open_page(url: str, width: int = 1280, height: int = LOW, fingers: bool = False) -> LabPage:
+        page = browser.new_page(viewport={"width": width, "height": height}, has_touch=fingers)
         opened.append(page)
         page.on("console", note)
         page.on("pageerror", lambda error: errors.append(str(error)))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import re
+import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +15,12 @@ from playwright.sync_api import Locator, Page, expect
 
 # Drawing in software on a busy machine takes its time, ms.
 PATIENCE = 60_000
-# The canvas between the docked panels of a page of 1280 pixels.
+# Heights of a page, px: half as many pixels are drawn twice as fast, where no picture is looked at.
+LOW, TALL = 400, 800
+# The canvas between the docked panels of a page of 1280 by TALL pixels.
 CANVAS = {"x": 380, "y": 10, "width": 520, "height": 780}
+# A picture that is the same after this is at rest, ms: messages that are processed are drawn in the next frame.
+_REST = 300
 
 
 class LabPage:
@@ -42,20 +48,33 @@ class LabPage:
         return self.page.locator("[data-status]")
 
     def expect_status(self, words: str) -> None:
-        expect(self.status).to_contain_text(re.compile(words), timeout=PATIENCE)
+        self.status.filter(has_text=re.compile(words)).wait_for(timeout=PATIENCE)
 
     def expect_text(self, words: str) -> None:
-        expect(self.page.get_by_text(re.compile(words)).first).to_be_visible(timeout=PATIENCE)
+        self.page.get_by_text(re.compile(words)).first.wait_for(timeout=PATIENCE)
 
-    def settled_text(self, words: str) -> str:
-        """What a line with these words says once it has stopped changing: steps may still be on their way."""
-        text = self.page.get_by_text(words).inner_text()
-        for _ in range(PATIENCE // 2000):
-            self.page.wait_for_timeout(2000)
-            last, text = text, self.page.get_by_text(words).inner_text()
-            if text == last:
-                break
-        return text
+    def expect_gone(self, words: str) -> None:
+        expect(self.page.get_by_text(words)).to_have_count(0, timeout=PATIENCE)
+
+    def pause(self) -> None:
+        """Stop time by its key."""
+        self.press("k")
+        self.page.locator("[data-time]").filter(has_text="paused").wait_for(timeout=PATIENCE)
+
+    @property
+    def time(self) -> float:
+        """The simulated time that is told, s, to the millisecond."""
+        return float(self.page.locator("[data-time]").get_attribute("data-time") or "nan")
+
+    def until(self, true: Callable[[], bool], what: str) -> None:
+        """Wait until something is the case with the page; say what it was if it never is."""
+        end = time.monotonic() + PATIENCE / 1000.0
+        while not true():
+            assert time.monotonic() < end, what
+            self.page.wait_for_timeout(50)
+
+    def expect_time(self, seconds: float) -> None:
+        self.page.locator(f"[data-time='{seconds:.3f}']").wait_for(timeout=PATIENCE)
 
     def press(self, *keys: str) -> None:
         for key in keys:
@@ -100,11 +119,7 @@ class LabPage:
             const chart = Object.values(window.__viserTestpoints?.uplots ?? {})[plot]?.chart;
             return (chart?.axes[0]._values ?? []).filter(v => v !== null && v !== '').length;
         }"""
-        for _ in range(PATIENCE // 200):
-            if self.page.evaluate(script, plot) >= 3:
-                return
-            self.page.wait_for_timeout(200)
-        raise AssertionError("the time axis has no figures")
+        self.until(lambda: self.page.evaluate(script, plot) >= 3, "the time axis has no figures")
 
     def com_travel(self) -> float:
         """How far the CoM has moved along the push, cm."""
@@ -112,25 +127,41 @@ class LabPage:
         return float(np.nanmax(com) - np.nanmin(com)) if com.size else 0.0
 
     def expect_com_travel(self, least: float) -> None:
-        for _ in range(PATIENCE // 200):
-            if self.com_travel() >= least:
-                return
-            self.page.wait_for_timeout(200)
-        raise AssertionError(f"the CoM has moved {self.com_travel():.2f} cm, not {least} cm")
+        self.until(lambda: self.com_travel() >= least, f"the CoM has not moved {least} cm")
+
+    def expect_points(self, plot: int, series: int, least: int) -> None:
+        """Wait until a curve has so many points."""
+        self.until(
+            lambda: int(np.isfinite(self.curve(plot, series)).sum()) >= least,
+            f"curve {series} of plot {plot} has no {least} points",
+        )
 
     def picture(self, clip: dict[str, int] | None = None) -> np.ndarray:
         """The page, or a part of it, once two pictures in a row are the same (h, w, 3)."""
-        last = b""
-        for _ in range(60):
-            data = self.page.screenshot(clip=clip, timeout=PATIENCE)
-            if data == last:
-                break
+        end, last = time.monotonic() + PATIENCE / 1000.0, b""
+        while (data := self.page.screenshot(clip=clip, timeout=PATIENCE)) != last:
+            assert time.monotonic() < end, "the picture does not come to rest"
             last = data
-            self.page.wait_for_timeout(700)
+            self.page.wait_for_timeout(_REST)
         return np.array(Image.open(io.BytesIO(data)).convert("RGB")).astype(int)
 
+    def picture_with(self, seen: Callable[[np.ndarray], bool], what: str) -> np.ndarray:
+        """The canvas, once something is seen in it (h, w, 3); say what it was if it never is."""
+        pictures = [self.picture(CANVAS)]
+
+        def look() -> bool:
+            pictures.append(self.picture(CANVAS))
+            return seen(pictures[-1])
+
+        if not seen(pictures[-1]):
+            self.until(look, what)
+        return pictures[-1]
+
     def save(self, path: Path) -> None:
-        """Keep a picture of the whole page once its canvas has come to rest."""
-        width = self.page.viewport_size["width"] if self.page.viewport_size else 0
-        self.picture(CANVAS if width > CANVAS["x"] + CANVAS["width"] else None)
+        """Keep a picture of the whole page, for people to look at."""
         self.page.screenshot(path=path, timeout=PATIENCE)
+
+
+def differing(one: np.ndarray, other: np.ndarray) -> float:
+    """The part of two pictures that is not the same."""
+    return float((np.abs(one - other).max(axis=2) > 40).mean())

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from momentum_lab.events import LoadScenario, StepOnce
+from tests.browser import readme_lessons
 from tests.browser.scenes import Scene
 
 # When the robot that stays upright has clearly gone over, and the other has bent and holds, ms.
@@ -53,4 +54,7 @@ SHOTS = (
     Shot("push", push),
     Shot("feet", feet, (), 0),
     Shot("pair", pair, ("right",)),
+    Shot("lesson7", readme_lessons.compared("7"), ("left",)),
+    Shot("lesson9", readme_lessons.explained("9"), ("left",)),
+    Shot("lesson11", readme_lessons.explained("11"), ("left",)),
 )

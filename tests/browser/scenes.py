@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from playwright.sync_api import Browser
 
+from momentum_lab.app.library import Library
 from momentum_lab.app.overlays import Mark, Picture, overlays
 from momentum_lab.app.profile import TEST, RenderProfile
 from momentum_lab.app.server import LabServer
@@ -32,10 +33,11 @@ STANDING, PUSHED = 500, 120
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A page, and the visitor who looks at it."""
+    """A page, the visitor who looks at it, and the lessons."""
 
     lab: LabPage
     visitor: Visitor
+    library: Library
 
     def act(self, *events: Event) -> None:
         """Let some events happen while time stands still."""
@@ -52,7 +54,9 @@ class Scene:
         """Wait until something is the case with the session."""
         end = time.monotonic() + PATIENCE / 1000.0
         while not true():
-            assert time.monotonic() < end, f"not true in time; last frame: {self.visitor.latest}"
+            assert time.monotonic() < end, (
+                f"not true in time; {self.frame.truth if self.visitor.latest else None}"
+            )
             time.sleep(0.05)
 
     @property
@@ -127,7 +131,8 @@ def opened(
 ) -> Iterator[Scene]:
     """The lab on a page of its own; at the end its console may have shown no error."""
     errors: list[str] = []
-    with LabServer(load_scenario(scenario), profile=profile, lesson=lesson) as server:
+    library = Library()
+    with LabServer(load_scenario(scenario), profile=profile, library=library, lesson=lesson) as server:
         page = browser.new_page(viewport={"width": 1280, "height": 800})
         page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
         page.on("pageerror", lambda error: errors.append(str(error)))
@@ -135,7 +140,7 @@ def opened(
         lab = LabPage(page)
         lab.page.locator("[data-status]").wait_for(timeout=PATIENCE)
         lab.dismiss_notices()
-        scene = Scene(lab, server.visitors[0])
+        scene = Scene(lab, server.visitors[0], library)
         # Panels come before the first frame has been drawn.
         scene.until(lambda: scene.visitor.latest is not None)
         try:

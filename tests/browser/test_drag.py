@@ -1,4 +1,4 @@
-"""A person pushes the robot by hand: grab it in the picture, pull, look at the arrow, let go; and it is repeated."""
+"""A person pushes the robot by hand or with a finger: grab it in the picture, pull, let go; and it is repeated."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from momentum_lab.recording import load_trace
 from momentum_lab.replay import replayed, trace_agreement
 from momentum_lab.share_code import from_code
 from tests.browser.conftest import OUTPUT, Opener, Served
-from tests.browser.lab_page import CANVAS, PATIENCE, LabPage
+from tests.browser.lab_page import CANVAS, PATIENCE, TALL, LabPage
 from tests.browser.test_share import code_of, downloaded
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
 
 # On the trunk in the first view; to the right of it, a pull that the robot survives; and there, what one sees of it.
-TRUNK, PULLED, HELD = (640, 300), (730, 300), (690, 300)
-ARROW = {"x": 650, "y": 290, "width": 60, "height": 20}
-FORCE = {"x": 735, "y": 285, "width": 90, "height": 20}
+TRUNK, PULLED, HELD = (640, 230), (730, 230), (690, 230)
+ARROW = {"x": 650, "y": 220, "width": 60, "height": 20}
+FORCE = {"x": 735, "y": 215, "width": 90, "height": 20}
 
 
 def pull(lab: LabPage, end: tuple[int, int]) -> None:
@@ -33,7 +33,33 @@ def pull(lab: LabPage, end: tuple[int, int]) -> None:
     for part in np.linspace(0.2, 1.0, 5):
         x, y = np.array(TRUNK) + part * (np.array(end) - TRUNK)
         lab.page.mouse.move(float(x), float(y))
-        lab.page.wait_for_timeout(200)
+        lab.page.wait_for_timeout(100)
+
+
+class Finger:
+    """A finger on the trunk."""
+
+    def __init__(self, lab: LabPage) -> None:
+        self._page, self._at = lab.page, TRUNK
+        self._wire = lab.page.context.new_cdp_session(lab.page)
+
+    def pull(self, end: tuple[int, int]) -> None:
+        """Go somewhere in steps and stay there; the first time from the trunk."""
+        start = np.array(self._at)
+        if self._at == TRUNK:
+            self._send("touchStart", TRUNK)
+        for part in np.linspace(0.2, 1.0, 5):
+            self._send("touchMove", tuple((start + part * (np.array(end) - start)).tolist()))
+        self._at = end
+
+    def lift(self) -> None:
+        self._send("touchEnd")
+        self._at = TRUNK
+
+    def _send(self, kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": x, "y": y} for x, y in places]
+        self._wire.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        self._page.wait_for_timeout(200)
 
 
 def slider(lab: LabPage, label: str) -> Locator:
@@ -49,18 +75,16 @@ def changed(before: np.ndarray, after: np.ndarray, clip: dict[str, int]) -> floa
 
 
 def test_a_hand_in_the_picture(served: Served, open_page: Opener, tmp_path: Path) -> None:
-    lab = open_page(served.url).until_furnished()
+    lab = open_page(served.url, height=TALL, fingers=True).until_furnished()
     lab.expect_status("standing")
     lab.expect_ticks(plot=0)
     still = lab.picture(CANVAS)
 
     lab.page.keyboard.down("Shift")
     pull(lab, PULLED)
-    lab.page.wait_for_timeout(1000)
-    pulling = lab.picture(CANVAS)
+    lab.picture_with(lambda pulling: changed(still, pulling, ARROW) > 0.3, "no arrow where it is pulled")
+    lab.picture_with(lambda pulling: changed(still, pulling, FORCE) > 0.1, "no force beside the arrow")
     lab.save(OUTPUT / "drag_pulse.png")
-    assert changed(still, pulling, ARROW) > 0.3
-    assert changed(still, pulling, FORCE) > 0.1
     assert lab.com_travel() < 0.3
     lab.page.mouse.up()
     lab.page.keyboard.up("Shift")
@@ -73,19 +97,29 @@ def test_a_hand_in_the_picture(served: Served, open_page: Opener, tmp_path: Path
 
     lab.page.get_by_role("combobox", name="by hand").evaluate("b => b.click()")
     lab.page.get_by_role("option", name="hold").evaluate("o => o.click()")
-    lab.page.wait_for_timeout(1000)
-    lab.page.keyboard.down("Shift")
-    pull(lab, HELD)
+    switch = lab.page.get_by_role("checkbox", name="drag pushes the robot")
+    lab.press("t")
+    expect(switch).to_be_checked(timeout=PATIENCE)
+    lab.page.wait_for_timeout(1000)  # the meshes hear of it after the switch
+    finger = Finger(lab)
+    finger.pull(HELD)
     lab.page.wait_for_timeout(1000)
     lab.page.screenshot(path=OUTPUT / "drag_hold.png", timeout=PATIENCE)
-    lab.page.mouse.up()
-    lab.page.keyboard.up("Shift")
+    finger.lift()
     expect(slider(lab, "duration (ms)")).not_to_have_attribute("aria-valuenow", "100", timeout=PATIENCE)
-    lab.press("k")
-    lab.expect_text("paused")
+    lab.pause()
 
+    lab.page.get_by_role("combobox", name="by hand").evaluate("b => b.click()")
+    lab.page.get_by_role("option", name="pulse").evaluate("o => o.click()")
+    finger.pull(PULLED)  # and back: given up
+    finger.pull((TRUNK[0] + 3, TRUNK[1]))
+    finger.lift()
+    lab.press("t")
+    expect(switch).not_to_be_checked(timeout=PATIENCE)
+    still = lab.picture(CANVAS)
     pull(lab, PULLED)  # without Shift: the picture turns, and nobody is pushed
     lab.page.mouse.up()
+    assert changed(still, lab.picture(CANVAS), CANVAS) > 0.1
     lab.open_tab("5", "Share")
     run = from_code(code_of(lab))
     session, _ = replayed(run)

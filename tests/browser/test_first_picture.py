@@ -52,11 +52,11 @@ def test_a_floor_alone_is_no_picture() -> None:
 
 
 def test_the_robot_is_there_within_three_seconds(
-    browser: Browser, served: Served, box_url: str, capsys: pytest.CaptureFixture[str]
+    browser: Browser, served_in_detail: Served, box_url: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     first_picture(browser, box_url)  # the browser's own start
     box = min(first_picture(browser, box_url) for _ in range(2))
-    robot = min(first_picture(browser, served.url) for _ in range(2))
+    robot = min(first_picture(browser, served_in_detail.url) for _ in range(2))
     with capsys.disabled():
         print(f"\nfirst picture: robot {robot:.2f} s, a single box {box:.2f} s")
     assert robot < max(PROMISE, MORE * box)

@@ -20,7 +20,7 @@ from momentum_lab.run_file import Run, read_run, run_of, run_of_trace
 from momentum_lab.scenario import Scenario
 from momentum_lab.share_code import from_code, link, to_code
 from tests.browser.conftest import OUTPUT, Opener, Served
-from tests.browser.lab_page import PATIENCE, LabPage
+from tests.browser.lab_page import PATIENCE, TALL, LabPage
 
 pytestmark = [
     pytest.mark.browser,
@@ -60,12 +60,11 @@ def downloaded(lab: LabPage, what: str, folder: Path) -> Path:
 
 
 def test_files_and_codes_hold_the_run(served: Served, open_page: Opener, tmp_path: Path) -> None:
-    lab = open_page(served.url).until_furnished()
+    lab = open_page(served.url, height=TALL).until_furnished()  # a list does not open out of sight
     lab.press("p")
     lab.expect_text("Last push")
-    lab.page.wait_for_timeout(1500)
-    lab.press("k")
-    lab.expect_text("paused")
+    lab.expect_com_travel(1.0)  # the push is over
+    lab.pause()
     lab.open_tab("5", "Share")
     code = code_of(lab)
     lab.save(OUTPUT / "share.png")
@@ -110,9 +109,8 @@ def test_what_is_no_run_is_told_and_nothing_is_lost(
     served: Served, open_page: Opener, tmp_path: Path
 ) -> None:
     lab = open_page(served.url).until_furnished()
-    lab.press("k")
-    lab.expect_text("paused")
-    simulated = lab.settled_text("simulated time")
+    lab.pause()
+    simulated = lab.time
     lab.open_tab("5", "Share")
     type_code(lab, "lab1-AAAA")
     lab.page.wait_for_timeout(500)
@@ -123,7 +121,7 @@ def test_what_is_no_run_is_told_and_nothing_is_lost(
     bad.write_text(json.dumps({"format": "momentum_lab run", "version": 1, "scenario": {"name": 3}}))
     lab.page.locator("input[type=file]").first.set_input_files(bad)
     lab.expect_text("name in bad.json: got 3; allowed: text")
-    assert lab.settled_text("simulated time") == simulated
+    assert lab.time == simulated
     good = tmp_path / "good.toml"
     good.write_text('format = "momentum_lab run"\nversion = 1\n[scenario]\nname = "mine"\nrobot = "g1"\n')
     lab.page.locator("input[type=file]").first.set_input_files(good)

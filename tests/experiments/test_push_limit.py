@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from types import SimpleNamespace
 
 import msgspec
@@ -10,7 +11,7 @@ import pytest
 
 from momentum_lab.errors import InputError
 from momentum_lab.experiments import push_limit as module
-from momentum_lab.experiments.push_limit import Trial, push_limit
+from momentum_lab.experiments.push_limit import PushLimit, Trial, push_limit
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario, changed
 from tests.runs import play
@@ -31,6 +32,13 @@ def always(_fraction: float) -> bool:
 
 def standing(robot, engine: str = "pinocchio") -> Scenario:
     return Scenario("limit", robot=robot.spec.name, engine=engine, seconds=SECONDS)
+
+
+@cache
+def limit_of(robot, direction: float) -> PushLimit:
+    """The lab's own largest push in a direction, searched once."""
+    push = Push(force=0.0, direction_deg=direction, start=START)
+    return push_limit(standing(robot), robot, push, always, COARSE)
 
 
 def pretend(monkeypatch, survives) -> list[float]:
@@ -99,8 +107,7 @@ def test_both_engines_agree_on_the_largest_push(robot, direction):
 
     The lab's own is between force and beyond; MuJoCo's is within 10 % of it wherever in there it is.
     """
-    push = Push(force=0.0, direction_deg=direction, start=START)
-    found = push_limit(standing(robot), robot, push, always, COARSE)
+    push, found = Push(force=0.0, direction_deg=direction, start=START), limit_of(robot, direction)
     assert found.impulse_ratio > LEAST_RATIO[direction]
     lower, upper = (1.0 - AGREEMENT) * found.beyond, (1.0 + AGREEMENT) * found.force
     assert module.trial(standing(robot, "mujoco"), robot, push, lower, always).survived
@@ -109,8 +116,7 @@ def test_both_engines_agree_on_the_largest_push(robot, direction):
 
 def test_a_limit_tells_a_run_at_rest_from_one_that_is_not(g1):
     """The same runs without the search: one at rest at the end; the other fallen, or faster than 0.02 m/s."""
-    push = Push(force=0.0, direction_deg=270.0, start=START)
-    found = push_limit(standing(g1), g1, push, always, COARSE)
+    push, found = Push(force=0.0, direction_deg=90.0, start=START), limit_of(g1, 90.0)
     stood, failed = (
         play(g1, changed(standing(g1), pushes=(msgspec.structs.replace(push, force=force),)))
         for force in (found.force, found.beyond)

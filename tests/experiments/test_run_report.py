@@ -128,9 +128,25 @@ def test_the_table_is_the_recording(run):
     assert len(set(lines[0])) == len(lines[0]) == run.recording.layout.width
     values = np.array(lines[1:], dtype=float)
     assert values == pytest.approx(run.recording.rows(), rel=1e-8, abs=1e-12, nan_ok=True)
-    column = lines[0].index("com.z")
+    column = lines[0].index("com/z [m]")
     assert values[:, column] == pytest.approx(run.recording.column("com")[:, 2], rel=1e-8)
-    assert "foot_wrench_measured.left.fz" in lines[0]
+    weight = values[0, lines[0].index("foot_wrench_measured/left/fz [N]")]
+    assert weight == pytest.approx(0.5 * 9.81 * run.robot.mass, rel=0.05)
+
+
+def test_every_number_of_a_joint_or_the_base_has_its_name_and_unit(run):
+    """A column is the joint's own, and no number of a run is called by a bare count."""
+    lines = list(csv.reader(io.StringIO(table(run).decode())))
+    values, robot = np.array(lines[1:], dtype=float), run.robot
+    for joint, name in enumerate(robot.joint_names):
+        for quantity, unit, first in (("q", "rad", 7), ("v", "rad/s", 6), ("torque", "N m", 0)):
+            column = values[:, lines[0].index(f"{quantity}/{name} [{unit}]")]
+            assert column == pytest.approx(run.recording.column(quantity)[:, first + joint], rel=1e-8)
+    assert lines[0][:2] == ["time [s]", "q/base_x [m]"]
+    without = {name for name in lines[0] if "[" not in name}
+    flags = {"torque_ratio", "priority", "solver_failed", "fallen"}
+    assert {name for name in without if name.rpartition("/")[2].removeprefix("base_")[:1] != "q"} == flags
+    assert not any(part.isdigit() for name in lines[0] for part in name.split("/"))
 
 
 def test_a_long_run_gives_a_thinner_table(run):

@@ -11,9 +11,12 @@ from momentum_lab.errors import InputError
 from momentum_lab.events import ApplyPush, ApplyPushes, HoldPush, LetGo, LoggedEvent, Reset
 from momentum_lab.physics.held_push import Pushed
 from momentum_lab.physics.push import MAX_DURATION, MAX_REACH, Push, apply_pushes
+from momentum_lab.replay import replayed
 from momentum_lab.robot.state import State
+from momentum_lab.run_file import run_of
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
+from momentum_lab.share_code import from_code, to_code
 from tests.conftest import assert_close, random_state
 
 LEFT = Push(force=40.0, direction_deg=90.0, start=9.0, duration=7.0, shape="half-sine")
@@ -141,3 +144,31 @@ def test_what_cannot_be_held_is_refused_and_leaves_no_trace(talos, changes, mess
         session.post(HoldPush(msgspec.structs.replace(FORWARD, **changes)))
     session.tick()
     assert session.log == []
+
+
+def test_what_waits_for_the_next_tick_counts_as_done(talos):
+    """A run that is taken right after a hand has let go holds the whole hold, as the next tick will have it."""
+    session = played(session_of(talos), {10: [HoldPush(LEFT)]}, 35)
+    waiting = [LetGo(), ApplyPush(FORWARD), Reset(), HoldPush(LEFT), LetGo(), ApplyPush(FORWARD)]
+    for count in (1, 2):
+        later = session.pushes_after(waiting[:count])
+        for event in waiting[:count]:
+            session.post(event)
+        before = session.snapshot()
+        session.tick()
+        assert session.pushes == later
+        session.resume(before)
+    assert [push.start for push in session.pushes_after(waiting)] == [session.time]
+    assert session.pushes_after(()) == session.pushes
+
+
+def test_a_pull_upwards_lifts_a_part_of_the_weight_and_is_replayed_to_the_bit(talos):
+    """Under the soles there is less of the weight by the force that pulls up, once the robot has come to rest."""
+    up = Push(force=100.0, elevation_deg=90.0, body="trunk", point=(0.0, 0.0, 0.1))
+    session = played(session_of(talos), {20: [HoldPush(up)], 1000: [LetGo()]}, 1020)
+    assert_close(session.recording.column("push_wrench")[21:999, :3], [[0.0, 0.0, 100.0]] * 978, 1e-9)
+    pressed = session.recording.column("foot_wrench_measured")[:, :, 2].sum(axis=1)
+    weight = pressed[10]
+    assert pressed[900:999].mean() == pytest.approx(weight - 100.0, abs=5.0)
+    again = replayed(from_code(to_code(run_of(session))))[0]
+    assert again.recording.rows().tobytes() == session.recording.rows().tobytes()

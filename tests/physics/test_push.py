@@ -180,3 +180,25 @@ def test_a_push_lasts_as_long_as_it_says(robot):
         state = step.state
     assert impulse[0] == pytest.approx(FORCE * 0.0137, rel=1e-9)
     assert robot.at(state).momentum[0] == pytest.approx(FORCE * 0.0137, rel=0.02)
+
+
+@pytest.mark.parametrize("elevation", [-90.0, -30.0, 0.0, 45.0, 90.0])
+def test_a_push_may_point_up_or_down(elevation):
+    """The force has its whole strength whichever way it points; what points up is missing over the ground."""
+    push = Push(force=FORCE, direction_deg=90.0, elevation_deg=elevation)
+    flat, up = np.cos(np.radians(elevation)), np.sin(np.radians(elevation))
+    assert_close(push.direction, [0.0, flat, up], 1e-12)
+    assert_close(push.along, [0.0, 1.0], 1e-12)
+    assert push.horizontal_part == pytest.approx(flat, abs=1e-12)
+
+
+def test_how_a_push_points_is_told_to_people():
+    assert Push(direction_deg=90.0).towards == "90°"
+    assert Push(direction_deg=-45.0, elevation_deg=30.0).towards == "-45°, 30° up"
+    assert Push(elevation_deg=-30.0).towards == "0°, 30° down"
+
+
+@pytest.mark.parametrize("elevation", [91.0, -91.0, float("nan")])
+def test_nothing_points_further_up_than_up(elevation):
+    with pytest.raises(InputError, match=r"elevation_deg: got .*; allowed: from -90 to 90 degrees"):
+        Push(force=FORCE, elevation_deg=elevation).sized_for(50.0)

@@ -1,0 +1,58 @@
+"""When the robot was pushed: the instants that other times of a run are counted from, and what a way back undoes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from momentum_lab.events import ApplyPush, ApplyPushes, HoldPush, LetGo, LoggedEvent, SessionEvent
+from momentum_lab.physics.push import Push
+from momentum_lab.session import Session
+
+# Times are sums of time steps, s.
+_ROUNDING = 1e-6
+_OF_A_HAND = (ApplyPush, ApplyPushes, HoldPush, LetGo)
+
+
+def beginnings(pushes: Iterable[Push], now: float) -> tuple[float, ...]:
+    """When pushes have begun by a time of the run, s, in their order.
+
+    One that begins where another ends goes on with it: a hand that moves pulls once.
+    """
+    begun = sorted((push for push in pushes if push.start <= now + _ROUNDING), key=lambda push: push.start)
+    ends = [push.start + push.duration for push in begun]
+    return tuple(
+        dict.fromkeys(
+            push.start for push in begun if not any(abs(push.start - end) < _ROUNDING for end in ends)
+        )
+    )
+
+
+def latest_before(pushed: Sequence[float], time: float) -> float | None:
+    """When the latest push before a time of the run began, s; None without one."""
+    return max((start for start in pushed if start <= time + _ROUNDING), default=None)
+
+
+def forgotten(session: Session, tick: int, coming: Sequence[LoggedEvent]) -> tuple[float, ...]:
+    """When a hand has pushed that does not push again if the session goes on from a tick of its own, s of the run.
+
+    Args:
+        session: between two ticks.
+        tick: what was done from its start on is forgotten.
+        coming: what an opened run does again.
+    """
+    start = session.ticks - round(session.time / session.scenario.timestep)
+    times = []
+    before: SessionEvent | None = None
+    for entry in session.log:
+        if entry.tick < tick or not isinstance(entry.event, _OF_A_HAND) or entry in coming:
+            continue
+        pulled = isinstance(before, HoldPush)
+        before = entry.event
+        if not isinstance(before, LetGo) and not (pulled and isinstance(before, HoldPush)):
+            times.append((entry.tick - start) * session.scenario.timestep)
+    return tuple(times)
+
+
+def is_handled(coming: Iterable[LoggedEvent]) -> bool:
+    """Whether a push that is held now is moved or let go by what an opened run does later."""
+    return any(isinstance(entry.event, HoldPush | LetGo) for entry in coming)

@@ -1,0 +1,165 @@
+"""One pull of a hand after the other: what a drag so far amounts to, what is drawn of it, and what it posts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+import viser
+
+from momentum_lab.app.hand_scene import HandScene
+from momentum_lab.app.held import Held
+from momentum_lab.app.pull import Drag, Grip, Scale, WayBack, grip
+from momentum_lab.app.push_panel import PushPanel
+from momentum_lab.app.robot_scene import RobotScene
+from momentum_lab.app.robots import LoadedRobot
+from momentum_lab.app.view_panel import ViewSettings
+from momentum_lab.app.widgets import Post
+from momentum_lab.events import ApplyPushes, HoldPush, LetGo
+from momentum_lab.physics.push import Push
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """A robot that can be grabbed.
+
+    Attributes:
+        body: its meshes.
+        robot: the robot.
+        size: height of its CoM as it stands, m.
+        offset: from its own world to where it is drawn (3,), m.
+    """
+
+    body: RobotScene
+    robot: LoadedRobot
+    size: float
+    offset: np.ndarray
+
+
+@dataclass(slots=True)
+class Pull:
+    """A pull that is going on."""
+
+    reach: Reach
+    grip: Grip
+    holds: bool
+    held: Push | None = None
+    way: WayBack = field(default_factory=WayBack)
+
+
+class Pulling:
+    """The pulls of one browser tab.
+
+    Args:
+        client: the browser tab.
+        panel: describes pushes, and shows those of the hand.
+        settings: how long arrows are.
+        post: where events go.
+        pushes: the pushes of the run so far.
+    """
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        panel: PushPanel,
+        settings: ViewSettings,
+        post: Post,
+        pushes: Callable[[], tuple[Push, ...]],
+    ) -> None:
+        self._panel, self._settings = panel, settings
+        self._post, self._pushes = post, pushes
+        self._scene = HandScene(client)
+        self._pull: Pull | None = None
+        # How long what was held has lasted, and how long pushes were before the panel showed that, s.
+        self._durations = (0.0, 0.0)
+        self.playing = True
+
+    def begin(self, reach: Reach, joint: int, drag: Drag) -> None:
+        """Take hold of what moves with a joint.
+
+        Raises:
+            InputError: a browser has chosen what no widget offers.
+        """
+        self.drop()
+        held = self._panel.hand.by_hand == "hold" and self.playing
+        taken = grip(reach.robot.model, reach.body.drawn, joint, drag.start - reach.offset)
+        self._pull = Pull(reach, taken, held)
+        self.move(drag)
+
+    def move(self, drag: Drag) -> None:
+        """Draw the pull as it is now; a hold gives its force."""
+        if self._pull is None:
+            return  # nothing was grabbed, or it was refused
+        pull, size = self._pull, self._pull.reach.size
+        force, scale = self._force(pull, drag)
+        if pull.held is not None and "push" in self._settings.shown:
+            self._scene.clear()  # the push itself is in the picture
+            return
+        home = "back here: no push" if pull.way.left and force.any() and not pull.holds else ""
+        words = _words(pull, force, scale, self.playing)
+        self._scene.draw(drag.start, scale.length(force), words, home, size)
+
+    def let_go(self, drag: Drag) -> None:
+        """What a hand does that opens: the push, or the end of the one that was held."""
+        if self._pull is None:
+            return
+        pull, (force, _) = self._pull, self._force(self._pull, drag)
+        self._pull = None
+        self._scene.clear()
+        if pull.held is not None:
+            self._post(LetGo())
+            self._remember(pull.grip)
+        elif not pull.holds and force.any():
+            push = pull.grip.pulse(force, self._duration())
+            self._panel.show(push)
+            self._panel.give(push)
+
+    def drop(self) -> None:
+        """Open the hand without a push."""
+        pull, self._pull = self._pull, None
+        self._scene.clear()
+        if pull is not None and pull.held is not None:
+            self._post(LetGo())
+
+    def _force(self, pull: Pull, drag: Drag) -> tuple[np.ndarray, Scale]:
+        """The force of now (3,), N, which a hold gives if it is another one; and how strong pulls are."""
+        robot, strongest = pull.reach.robot.model, self._panel.form.strongest
+        scale = Scale.of(robot, pull.reach.size, self._settings.arrow_scale, strongest)
+        distance = self._panel.hand.pulled(drag.eye, drag.start, drag.end)
+        force = scale.force(np.zeros(3) if pull.way.is_back(drag.off) else distance)
+        if pull.holds:
+            self._hold(pull, pull.grip.piece(force, scale.strongest))
+        return force, scale
+
+    def _hold(self, pull: Pull, piece: Push) -> None:
+        if (piece.force and pull.held is None) or (pull.held is not None and piece != pull.held):
+            pull.held = piece
+            self._post(HoldPush(piece))
+
+    def _remember(self, taken: Grip) -> None:
+        """Let the panel show what was held, and repeat it."""
+        held = Held.last_of(self._pushes(), taken)
+        if held is not None:
+            before = self._duration()
+            self._panel.show(held.mean)
+            self._durations = (self._panel.form.duration, before)
+            self._panel.can_repeat(ApplyPushes(held.from_now))
+
+    def _duration(self) -> float:
+        """How long a push is to last, s: what the panel says, unless that is how long something was held."""
+        shown, before = self._durations
+        return before if self._panel.form.duration == shown else self._panel.form.duration
+
+
+def _words(pull: Pull, force: np.ndarray, scale: Scale, playing: bool) -> str:
+    """What the label of the arrow says: how strong, on what, and what letting go will do."""
+    strength = float(np.linalg.norm(force))
+    if not strength:
+        return "let go: no push"
+    words = f"{strength:.0f} N on {pull.grip.body.replace('_', ' ')}"
+    if strength > 0.999 * scale.strongest:
+        words += ", the most"
+    if pull.holds:
+        return f"{words}, held"
+    return words if playing else f"{words}, waits for play"

@@ -1,0 +1,47 @@
+"""What a hand has held last: its pieces among all pushes of a run, and their mean."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+import pytest
+
+from momentum_lab.app.held import Held
+from momentum_lab.app.pull import Grip
+from momentum_lab.physics.push import Push
+
+GRIP = Grip("trunk", (0.1, 0.0, 0.2))
+
+
+def pieces_of(pushes: tuple[Push, ...]) -> tuple[Push, ...]:
+    held = Held.last_of(pushes, GRIP)
+    assert held is not None
+    return held.pieces
+
+
+def test_the_mean_of_a_hold_has_its_impulse_and_its_length():
+    pieces = (
+        msgspec.structs.replace(GRIP.piece(np.array([100.0, 0.0, 0.0]), 1000.0), start=2.0, duration=0.3),
+        msgspec.structs.replace(GRIP.piece(np.array([0.0, 100.0, 0.0]), 1000.0), start=2.3, duration=0.4),
+    )
+    held = Held(GRIP, pieces[0], pieces[1:])
+    mean = held.mean
+    assert mean.duration == pytest.approx(0.7)
+    assert mean.force == pytest.approx(math.hypot(30.0, 40.0) / 0.7, abs=0.5)
+    assert mean.direction_deg == pytest.approx(math.degrees(math.atan2(40.0, 30.0)), abs=0.5)
+    assert [round(piece.start, 9) for piece in held.from_now] == [0.0, 0.3]
+
+
+def test_a_hold_is_told_from_what_came_before_it():
+    before = Push(force=10.0, start=1.0, duration=1.0)
+    pieces = tuple(
+        msgspec.structs.replace(GRIP.piece(np.array([force, 0.0, 0.0]), 650.0), start=start, duration=0.5)
+        for force, start in ((65.0, 2.0), (130.0, 2.5))
+    )
+    assert pieces_of((before, *pieces)) == pieces
+    gap = msgspec.structs.replace(pieces[0], start=1.4)
+    assert pieces_of((gap, *pieces)) == pieces
+    assert Held.last_of((), GRIP) is None
+    assert Held.last_of((*pieces, before), GRIP) is None
