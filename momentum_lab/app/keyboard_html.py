@@ -1,4 +1,4 @@
-"""Keys for what viser lets only a mouse do: folders and the bars of panels are reached with Tab, opened with Enter."""
+"""Keys for what viser leaves to a mouse: folders and bars of panels are reached with Tab, opened with Enter."""
 
 from __future__ import annotations
 
