@@ -73,17 +73,13 @@ STEPS = (
         ),
     ),
     lab.Number(
-        "Beside it another one falls, kicked in the air. How much of the kick's angular momentum is lost "
-        "before it lands?",
-        "lost",
-        0,
-        100,
+        "Another one is kicked in the air. How much of its spin is lost before it lands?", "lost", 0, 100
     ),
-    lab.Play("Slow it down, and watch the hips.", "cat", ("push", "push height"), beside="kicked"),
+    lab.Play("You look from the front. Slow it down.", "cat", ("push",), beside="kicked", view="Front"),
     lab.Compare(
-        "The legs are back to within {bent}. The body has turned by {cat} about the vertical. "
-        "The legs had up to {limbs}, the body as much the other way, the sum {none} at most. Of the kick's "
-        "{kick}, {lost} was lost.",
+        "The legs are back to within {bent}. The body has turned by {cat} about the vertical. The "
+        "legs had up to {limbs}, the body as much the other way, and the sum was never more than {none}. Of "
+        "the kick's {kick}, {lost} was lost.",
         ("cat", "bent", "lost"),
     ),
     lab.Prose(

@@ -93,7 +93,7 @@ STEPS = (
     ),
     lab.Explain(
         "Here the bus is farthest forward and turns back. To turn back with it, the CoM needs a force of {force} "
-        "backward, and that takes a CoP {ahead} in front of it (Eq. 21). A foot is only so long: a wilder bus "
+        "backward. That takes a CoP {ahead} in front of it (Eq. 21). A foot is only so long: a wilder bus "
         "takes a step, or a handrail.",
         "told",
         TURN,

@@ -63,15 +63,22 @@ class DemoStage:
         self.demo = Demo(self._play, self._leave, robot, patience, clock)
         self._seat: Seat | None = None
         self._since = 0.0
-        self._caption: viser.GuiHtmlHandle | None = None
+        self._captions: list[viser.GuiHtmlHandle] = []
         self._gone = threading.Event()
 
     def furnish(self) -> None:
         """Add what it needs to the page, and watch the time from now on."""
         self._client.gui.add_html(LISTENER)
-        self._caption = self._client.gui.add_html("")
+        self.add_caption()
         self.demo.touch()
         threading.Thread(target=self._watch, name="demo", daemon=True).start()
+
+    def add_caption(self) -> None:
+        """Let the panel that is being made carry the sentence, too: what is in a folded panel does not exist.
+
+        It is at the same place of the page whichever panel carries it, and covers what another one shows.
+        """
+        self._captions.append(self._client.gui.add_html(""))
 
     def listen(self) -> None:
         """Hear the key that the page presses; last in the list of commands, where only a demonstration is ended."""
@@ -115,9 +122,9 @@ class DemoStage:
         self._say("")
 
     def _say(self, content: str) -> None:
-        if self._caption is not None:
-            self._caption.content = content
-            self._client.flush()
+        for handle in self._captions:
+            handle.content = content
+        self._client.flush()
 
 
 def caption(words: str) -> str:
@@ -126,7 +133,7 @@ def caption(words: str) -> str:
         '<div data-demo style="position:fixed;left:50vw;top:2.5vh;transform:translateX(-50%);z-index:50;'
         "width:max-content;box-sizing:border-box;"
         "max-width:min(92vw,max(22em,100vw - 46rem));padding:.6em 1em;border-radius:.4em;"
-        'pointer-events:none;background:rgba(0,0,0,.78);color:#fff;font-size:1.35rem;line-height:1.35;text-align:center">'
+        'pointer-events:none;background:#0b4f79;color:#fff;font-size:1.35rem;line-height:1.35;text-align:center">'
         f"{escape(words)}"
         '<div style="font-size:.6em;opacity:.8">The lab plays by itself. Touch it, and it is yours.</div></div>'
     )

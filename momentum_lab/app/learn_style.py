@@ -49,7 +49,7 @@ STYLE = f"<style>{_TEXT}{_CHOICES}{_AT_NIGHT}</style>"
 _SHEET = "[style*='width: 20em']>:last-child"
 ON_A_PHONE = (
     f"<style>@media(max-width:36em){{{_SHEET}{{display:flex;flex-direction:column}}"
-    f"{_SHEET}>:has([aria-label^='Collapse panel'],[aria-label^='Expand panel']){{order:-1}}"
+    f"{_SHEET}>:has([aria-label^='Collapse panel']){{order:-1}}"
     "div:has(>.learn-way)+div{position:sticky;bottom:0;z-index:2;background:var(--mantine-color-body)}}</style>"
 )
-"""Once in a page: in a phone's one sheet this panel comes first, and the way on stays in sight at its lower edge."""
+"""Once in a page: unfolded, this panel comes first in a phone's one sheet, and the way on stays in sight below."""

@@ -86,6 +86,8 @@ class Panels:
         appearance = Appearance(client, self.settings, redraw)
         with time_bar(client, plan.picture) if plan.bar else contextlib.nullcontext():
             self.status = StatusBar(gui, post)
+            if plan.bar:
+                demo.add_caption()
         gui.add_html(share_html.HIDDEN_NEXT)
         address = gui.add_text("address", "")
         group = gui.add_tab_group()  # five of them fit into one line without icons
@@ -121,6 +123,7 @@ class Panels:
         with plots_tab:
             gui.add_html(_legend())
             self.plots = self._usual_plots = Plots(gui)
+            demo.add_caption()
         self._lesson_plots: tuple[viser.GuiFormHandle, Plots] | None = None
         self._robot: LoadedRobot | None = None
         left.dock_left()

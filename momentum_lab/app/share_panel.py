@@ -36,6 +36,7 @@ _FILES = {
     "film (.mp4)": ("film", ".mp4"),
     "small film (.mp4)": ("small film", ".mp4"),
 }
+_IN_SIGHT = "This tab draws it: keep it in sight; its own picture stands still."
 # Height of a film, pixels.
 _FILMS = {"film": 720, "small film": 360}
 
@@ -188,9 +189,7 @@ class SharePanel:
             percent = int(100.0 * fraction)
             if percent not in percents:
                 percents.add(percent)
-                self._show(
-                    f"film: {percent} % taken{_left(fraction, begun)}. Keep this tab in sight; it draws the film."
-                )
+                self._show(f"film: {percent} % taken{_left(fraction, begun)}. {_IN_SIGHT}")
 
         try:
             return self._sharing.film(taken, lines, report)

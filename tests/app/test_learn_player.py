@@ -51,7 +51,7 @@ def test_the_camera_is_turned_where_a_step_says_so(tmp_path: Path) -> None:
     player = opened(front, asked, looks)
     assert player.turns
     assert looks == []
-    player.answer(0.0)
+    player.answer(0, 0.0)
     player.forward()
     assert looks == ["Front"]
     assert asked == [OfferRun("push")]  # what is put on stage later is looked at from there, too
@@ -62,7 +62,7 @@ def test_the_camera_is_turned_where_a_step_says_so(tmp_path: Path) -> None:
 def test_a_lesson_without_a_view_leaves_the_camera_alone(tmp_path: Path) -> None:
     looks: list[str] = []
     player = opened(written(tmp_path, ('"seconds": 2.0', '"seconds": 0.4')), [], looks)
-    player.answer(0.0)
+    player.answer(0, 0.0)
     player.forward()
     assert not player.turns
     assert looks == []
