@@ -1,4 +1,4 @@
-"""All panels of one browser tab: status and tabs on the right, plots and lessons on the left, keys for everything."""
+"""All panels of one browser tab: tabs right, plots and lessons left, status and time below, keys for everything."""
 
 from __future__ import annotations
 
@@ -134,9 +134,9 @@ class Panels:
             (left.minimize if lesson is None else left.expand)()
 
         self._gui, self._group, self._roomy = gui, group, plan.roomy
+        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
         # The list of commands has them in this order: what is used most comes first.
         add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
-        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
         self.learn.start(lesson)
         demo.listen()
 
