@@ -97,7 +97,7 @@ class LabPage:
 
     def slide(self, label: str, key: str) -> None:
         """Focus the slider of a label and press a key on it."""
-        row = self.page.locator(f"label:text-is('{label}')").first
+        row = self.page.locator("label").filter(has_text=re.compile(f"^{re.escape(label)}$")).first
         uuid = row.get_attribute("for", timeout=PATIENCE)
         slider = self.page.locator(f"[id='{uuid}'] [role=slider]").first
         expect(slider).to_be_visible(timeout=PATIENCE)

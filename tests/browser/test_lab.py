@@ -150,7 +150,7 @@ def test_look_back_and_go_on_from_there(served: Served, open_page: Opener) -> No
     lab.slide("look back (s)", "Home")
     lab.expect_text("s before the end")
     lab.expect_status("standing")
-    lab.expect_text(re.escape(INVITATION))
+    lab.expect_text("Go on without 1 later push")
     lab.save(OUTPUT / "looking_back_test.png")
     lab.press("b")
     expect(lab.page.get_by_role("button", name="Pause", exact=True)).to_be_visible(timeout=PATIENCE)
