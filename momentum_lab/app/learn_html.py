@@ -160,7 +160,8 @@ def _line(step: StepRecord, mine: float) -> str:
         f'<path d="M{found:.0f} 6l7 8-7 8-7-8z" style="fill:{INK}"/>'
         f'<text x="10" y="32" font-size="10" style="fill:{PALE}">{step.low:g}</text>'
         f'<text x="290" y="32" font-size="10" style="fill:{PALE}" text-anchor="end">{step.high:g}</text>'
-        f'<text x="150" y="32" font-size="10" style="fill:{PALE}" text-anchor="middle">○ you · ◆ measured</text></svg>'
+        f'<text x="150" y="32" font-size="10" style="fill:{PALE}" text-anchor="middle">'
+        "○ you · ◆ measured</text></svg>"
     )
 
 
