@@ -168,11 +168,8 @@ def test_a_film_says_how_far_it_is(desk, what, height):
     desk.do("Download")
     assert [re.findall(r"\d+ %", line) for line in desk.lines] == [["25 %"], ["50 %"], ["100 %"]]
     # A picture every ten seconds, and three quarters, a half, nothing left.
-    assert [re.findall(r"\d+ s to go", line) for line in desk.lines] == [
-        ["30 s to go"],
-        ["20 s to go"],
-        ["0 s to go"],
-    ]
+    left = [re.findall(r"\d+ s to go", line) for line in desk.lines]
+    assert left == [["30 s to go"], ["20 s to go"], ["0 s to go"]]
     assert desk.sent == {"my-run-g1.mp4": b"film of %d" % height}
     assert not desk.gui.html[-1].visible
     assert not desk.gui.widgets["Stop the film"].visible

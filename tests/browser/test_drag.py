@@ -10,9 +10,9 @@ import pytest
 from playwright.sync_api import Locator, expect
 
 from momentum_lab.events import ApplyPush, HoldPush, LetGo
-from momentum_lab.recording import load_trace
 from momentum_lab.replay import replayed, trace_agreement
 from momentum_lab.share_code import from_code
+from momentum_lab.trace import load_trace
 from tests.browser.conftest import OUTPUT, Opener, Served
 from tests.browser.lab_page import CANVAS, PATIENCE, TALL, LabPage
 from tests.browser.test_share import code_of, downloaded
