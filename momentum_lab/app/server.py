@@ -23,6 +23,7 @@ from momentum_lab.app.profile import NORMAL, RenderProfile
 from momentum_lab.app.quiet import quiet
 from momentum_lab.app.robots import RobotShelf
 from momentum_lab.app.visitor import Visitor
+from momentum_lab.app.wake import wake_safely
 from momentum_lab.errors import ServerError
 from momentum_lab.robot.catalog import robot_names
 from momentum_lab.run_file import Run, as_run
@@ -124,6 +125,7 @@ class LabServer:
             if len(self._visitors) >= MOST_VISITORS:
                 client.add_notification("The lab is full", f"{MOST_VISITORS} tabs are open: close one.")
                 return
+            wake_safely(client)
             self._visitors[client.client_id] = Visitor(
                 client,
                 self._shelf,

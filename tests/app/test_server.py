@@ -18,6 +18,7 @@ from momentum_lab.app.bare_client import BareClient, Received
 from momentum_lab.app.profile import TEST
 from momentum_lab.app.server import LabServer
 from momentum_lab.app.visitor import Visitor
+from momentum_lab.app.wake import Wake
 from momentum_lab.app.wire import Truth
 from momentum_lab.errors import InputError, ServerError
 from momentum_lab.scenario import Scenario
@@ -77,6 +78,11 @@ def test_a_new_tab_shows_a_standing_robot_and_asks_for_a_push(client, lab):
     assert {"robot", "priority", "force (N)", "camera", "Push tab", "Help"} <= set(received.labels)
     assert received.told[1] > 0.0
     assert truth_of(lab.visitors[0]).fall is None
+
+
+def test_a_tab_may_be_drawn_to_from_several_threads(client, lab):
+    buffer = lab.visitors[0].client._websock_connection.get_message_buffer()
+    assert isinstance(buffer.message_event, Wake)
 
 
 def test_there_is_no_way_to_a_public_tunnel(client):
