@@ -106,14 +106,15 @@ class Hand:
         reach.body.on_drag(note, self._panel.modifier)
 
     def _work_off(self) -> None:
-        """Do all notes; of several moves only the last one counts."""
+        """Do all notes; of several moves only the last one pulls, the others tell which way it took."""
         while self._notes:
             note = self._notes.popleft()
             after = self._notes[0] if self._notes else None
-            if note and after and note.phase == after.phase == "update":
-                continue
             try:
-                self._take(note)
+                if note and after and note.phase == after.phase == "update":
+                    self._pulling.pass_by(Drag.checked(note.places, note.on_screen))
+                else:
+                    self._take(note)
             except InputError as error:
                 self._pulling.drop()
                 self._tell(str(error))

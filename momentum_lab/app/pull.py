@@ -135,9 +135,13 @@ class WayBack:
 
     left: bool = False
 
+    def go(self, off: float) -> None:
+        """Take note that the hand has been so far from there, in heights of the picture."""
+        self.left = self.left or off > _AWAY
+
     def is_back(self, off: float) -> bool:
         """Whether a hand so far from there, in heights of the picture, has been away and is back."""
-        self.left = self.left or off > _AWAY
+        self.go(off)
         return self.left and off < _BACK
 
 

@@ -100,6 +100,11 @@ class Pulling:
         words = _words(pull, force, scale, self.playing)
         self._scene.draw(drag.start, scale.length(force), words, home, size)
 
+    def pass_by(self, drag: Drag) -> None:
+        """Take note of where a hand has been that is somewhere else by now: nothing is drawn or held of it."""
+        if self._pull is not None:
+            self._pull.way.go(drag.off)
+
     def let_go(self, drag: Drag) -> None:
         """What a hand does that opens: the push, or the end of the one that was held."""
         if self._pull is None:

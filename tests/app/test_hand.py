@@ -38,7 +38,7 @@ class Desk:
         self.client = FakeClient()
         trunk = robot.model.frames[robot.trunk].parentJoint
         loaded = LoadedRobot(robot, (LinkMesh(trunk, *TRIANGLE, (0.5, 0.5, 0.5)),), Layout.of(robot))
-        self.posted, self.told = [], []
+        self.posted, self.told, self.busy = [], [], False
         self.panel = PushPanel(self.client.gui, self.posted.append, self.told.append, lambda: None)
         self.panel.set_robot(loaded)
         self.pushes: tuple = ()
@@ -57,7 +57,8 @@ class Desk:
         on_screen = ((0.5, 0.5), (0.5 + 0.25 * (x + y), 0.5 - 0.5 * z), (1600, 800))
         places = (told["start"], told["end"], told["eye"])
         self.hand.note(Note(self.reach, self.trunk, phase, places, on_screen))
-        self.hand.act()
+        if not self.busy:
+            self.hand.act()
 
     def set(self, label: str, value: object) -> None:
         self.client.gui.widgets[label].set_by_person(value)
@@ -127,6 +128,17 @@ def test_back_where_it_began_there_is_no_push_and_both_ends_of_the_arrow_say_so(
     desk.drag("start", 0.04, 0.0)
     desk.drag("end", 0.04, 0.0)  # a hand that has never been further away pulls gently
     assert desk.posted[0].push.force == round(0.04 * desk.scale.newtons_per_metre)
+
+
+def test_the_way_out_and_back_counts_however_fast_it_was(desk):
+    desk.drag("start", 0.0, 0.0)
+    desk.busy = True  # all of this comes while the server is at something else
+    for x in (0.1, 0.3, 0.03):
+        desk.drag("update", x, 0.0)
+    desk.busy = False
+    desk.drag("end", 0.03, 0.0)
+    assert desk.posted == []
+    assert desk.told == []
 
 
 @pytest.mark.parametrize("way", ["pulse", "hold"])
