@@ -55,8 +55,9 @@ class Hand:
 
     def reach(self, reach: Reach) -> None:
         """Let a robot be grabbed."""
-        self._listen(reach)
-        self._reaches.append((reach, self._panel.modifier))
+        modifier = self._panel.modifier  # a browser may change it at any moment: it is read once
+        self._listen(reach, modifier)
+        self._reaches.append((reach, modifier))
 
     def follow(self, playing: bool) -> None:
         """Take note of whether time runs, and of whether a drag needs Shift."""
@@ -65,7 +66,7 @@ class Hand:
         self._reaches = [(reach, bound) for reach, bound in self._reaches if reach.body.there]
         for reach, bound in self._reaches:
             if bound != modifier:
-                self._listen(reach)
+                self._listen(reach, modifier)
         self._reaches = [(reach, modifier) for reach, _ in self._reaches]
 
     def toggle(self) -> None:
@@ -94,7 +95,7 @@ class Hand:
             finally:
                 self._acting.release()
 
-    def _listen(self, reach: Reach) -> None:
+    def _listen(self, reach: Reach, modifier: str | None) -> None:
         async def note(joint: int, event: Any) -> None:
             camera = event.client.camera
             places = (event.start_position, event.end_position, camera.position)
@@ -103,7 +104,7 @@ class Hand:
             self.note(Note(reach, joint, event.phase, places, on_screen))
             asyncio.get_running_loop().run_in_executor(None, self.act)
 
-        reach.body.on_drag(note, self._panel.modifier)
+        reach.body.on_drag(note, modifier)
 
     def _work_off(self) -> None:
         """Do all notes; of several moves only the last one pulls, the others tell which way it took."""

@@ -283,6 +283,28 @@ def test_without_shift_a_drag_pulls_while_that_is_switched_on(desk):
     assert mesh.dragged == ("left", "shift")  # viser refuses new callbacks of what has gone
 
 
+class Flickering:
+    """A panel whose switch is turned over whenever somebody has looked at it."""
+
+    def __init__(self) -> None:
+        self.looked = 0
+
+    @property
+    def modifier(self) -> str | None:
+        self.looked += 1
+        return (None, "shift")[self.looked % 2]
+
+
+def test_a_switch_that_is_turned_meanwhile_is_followed_in_the_next_frame(desk):
+    desk.hand._panel = Flickering()
+    (mesh,) = [node for node in desk.client.scene.nodes.values() if node.method == "add_mesh_simple"]
+    desk.hand.reach(desk.reach)
+    assert mesh.dragged == ("left", "shift")
+    for modifier in (None, "shift"):
+        desk.hand.follow(playing=True)
+        assert mesh.dragged == ("left", modifier)
+
+
 def test_events_stay_in_order(desk):
     desk.hand.reach(desk.reach)
     (mesh,) = [node for node in desk.client.scene.nodes.values() if node.method == "add_mesh_simple"]
