@@ -10,7 +10,7 @@ import pytest
 
 from momentum_lab.app.held import Held
 from momentum_lab.app.pull import Grip
-from momentum_lab.physics.push import Push
+from momentum_lab.physics.push import MAX_DURATION, Push
 
 GRIP = Grip("trunk", (0.1, 0.0, 0.2))
 
@@ -19,6 +19,15 @@ def pieces_of(pushes: tuple[Push, ...]) -> tuple[Push, ...]:
     held = Held.last_of(pushes, GRIP)
     assert held is not None
     return held.pieces
+
+
+def held_for(*seconds: float) -> tuple[Push, ...]:
+    """A hand that pulls forward with 100 N, in pieces that last so long."""
+    piece = GRIP.piece(np.array([100.0, 0.0, 0.0]), 1000.0)
+    return tuple(
+        msgspec.structs.replace(piece, start=2.0 + math.fsum(seconds[:i]), duration=duration)
+        for i, duration in enumerate(seconds)
+    )
 
 
 def test_the_mean_of_a_hold_has_its_impulse_and_its_length():
@@ -44,4 +53,21 @@ def test_a_hold_is_told_from_what_came_before_it():
     gap = msgspec.structs.replace(pieces[0], start=1.4)
     assert pieces_of((gap, *pieces)) == pieces
     assert Held.last_of((), GRIP) is None
-    assert Held.last_of((*pieces, before), GRIP) is None
+    assert Held.last_of((before,), GRIP) is None
+
+
+def test_a_push_of_another_kind_during_a_hold_does_not_cut_it():
+    """Whoever holds the robot with one hand can press P with the other."""
+    pieces = held_for(0.5, 0.5)
+    pressed = Push(force=10.0, start=2.2, duration=0.1)
+    assert pieces_of((pieces[0], pressed, pieces[1])) == pieces
+    assert pieces_of((*pieces, pressed)) == pieces
+
+
+@pytest.mark.parametrize("seconds", [(9.0, 9.0), (9.0, 9.0, 9.0), (0.0123, 0.0004)])
+def test_the_mean_keeps_the_impulse_however_long_it_was_held(seconds):
+    """100 N for 18 s are 180 N for the ten seconds that a push may last."""
+    pieces = held_for(*seconds)
+    mean = Held(GRIP, pieces[0], pieces[1:]).mean
+    assert mean.duration <= MAX_DURATION
+    assert mean.impulse == pytest.approx(100.0 * math.fsum(seconds), rel=0.005)
