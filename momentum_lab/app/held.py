@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import msgspec
 import numpy as np
@@ -44,15 +45,33 @@ class Held:
     @property
     def mean(self) -> Push:
         """One constant push with the same impulse, as far as whole newtons go; it lasts as long if a push can."""
-        seconds = min(round(math.fsum(piece.duration for piece in self.pieces), 6), MAX_DURATION)
-        impulse = np.sum([piece.impulse * piece.direction for piece in self.pieces], axis=0)
+        impulse, seconds = _given(self.pieces)
         return self.grip.pulse(impulse / seconds, seconds)
 
-    @property
-    def from_now(self) -> tuple[Push, ...]:
-        """The same pieces, the first of them at zero."""
-        start = self.first.start
-        return tuple(msgspec.structs.replace(piece, start=piece.start - start) for piece in self.pieces)
+    def from_now(self, most: int) -> tuple[Push, ...]:
+        """The same pieces, the first of them at zero; of more than so many, neighbours are put together."""
+        groups = [self.pieces[i:j] for i, j in pairwise(_cuts(len(self.pieces), most))]
+        return tuple(self._together(group) for group in groups)
+
+    def _together(self, group: tuple[Push, ...]) -> Push:
+        """What some pieces have given as one, counted from the first piece of all."""
+        start = group[0].start - self.first.start
+        if len(group) == 1:
+            return msgspec.structs.replace(group[0], start=start)
+        return msgspec.structs.replace(self.grip.push(*_given(group)), start=start)
+
+
+def _given(pieces: tuple[Push, ...]) -> tuple[np.ndarray, float]:
+    """Impulse of some pieces (3,), N s, and for how long one push can give it, s."""
+    seconds = round(math.fsum(piece.duration for piece in pieces), 6)
+    impulse = np.sum([piece.impulse * piece.direction for piece in pieces], axis=0)
+    return impulse, min(seconds, MAX_DURATION)
+
+
+def _cuts(count: int, most: int) -> list[int]:
+    """Where to cut so many pieces into at most so many groups of nearly the same number."""
+    groups = min(count, most)
+    return [count * i // groups for i in range(groups + 1)]
 
 
 def _joined(piece: Push, after: Push) -> bool:

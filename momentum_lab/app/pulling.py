@@ -10,6 +10,7 @@ import viser
 
 from momentum_lab.app.hand_scene import HandScene
 from momentum_lab.app.held import Held
+from momentum_lab.app.inbox import MOST_PUSHES
 from momentum_lab.app.pull import Drag, Grip, Scale, WayBack, grip
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robot_scene import RobotScene
@@ -149,12 +150,20 @@ class Pulling:
             before = self._duration()
             self._panel.show(held.mean)
             self._durations = (self._panel.form.duration, before)
-            self._panel.can_repeat(ApplyPushes(held.from_now))
+            pieces = held.from_now(MOST_PUSHES)
+            self._panel.can_repeat(ApplyPushes(pieces), _coarser(len(held.pieces), len(pieces)))
 
     def _duration(self) -> float:
         """How long a push is to last, s: what the panel says, unless that is how long something was held."""
         shown, before = self._durations
         return before if self._panel.form.duration == shown else self._panel.form.duration
+
+
+def _coarser(held: int, repeated: int) -> str:
+    """What to tell whoever repeats a hold of so many pieces in so many; nothing if they are the same."""
+    if held == repeated:
+        return ""
+    return f"Your hand pulled in {held} pieces; they are repeated in {repeated}, with the same impulse."
 
 
 def _words(pull: Pull, force: np.ndarray, scale: Scale, playing: bool) -> str:

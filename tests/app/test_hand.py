@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from momentum_lab.app.hand import Hand, Note
+from momentum_lab.app.inbox import MOST_PUSHES, checked_event
 from momentum_lab.app.pull import Scale
 from momentum_lab.app.pulling import Pulling, Reach
 from momentum_lab.app.push_panel import PushPanel
@@ -206,6 +207,27 @@ def test_what_was_held_can_be_repeated_piece_by_piece(desk):
     desk.drag("start", 0.1, 0.0)
     desk.drag("end", 0.1, 0.0)
     assert desk.posted[-1].push.duration == 0.1  # and not the three seconds of what was held
+
+
+def test_a_hold_of_very_many_pieces_can_be_repeated_and_says_what_is_coarser(desk):
+    desk.set("by hand", "hold")
+    for i in range(137):
+        desk.drag("update" if i else "start", 0.1 + 0.002 * (i % 2) * i, 0.0)
+    pieces = [event.push for event in desk.posted]
+    desk.pushes = tuple(
+        msgspec.structs.replace(piece, start=3.0 + 0.02 * i, duration=0.02) for i, piece in enumerate(pieces)
+    )
+    assert len(pieces) > MOST_PUSHES
+    desk.drag("end", 0.1, 0.0)
+    assert desk.told == []
+    desk.panel.apply_again()
+    checked_event(desk.posted[-1], (), ())
+    assert desk.told == [
+        f"Your hand pulled in {len(pieces)} pieces; they are repeated in 50, with the same impulse."
+    ]
+    desk.panel.apply()
+    desk.panel.apply_again()
+    assert len(desk.told) == 1
 
 
 def test_in_a_pause_a_hold_would_last_no_time_and_is_a_pulse(desk):
