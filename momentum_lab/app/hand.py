@@ -16,6 +16,7 @@ from typing import Any
 from momentum_lab.app.hand_panel import HandPanel
 from momentum_lab.app.pull import Drag
 from momentum_lab.app.pulling import Pulling, Reach
+from momentum_lab.app.wire import Truth
 from momentum_lab.errors import InputError
 
 
@@ -59,9 +60,13 @@ class Hand:
         self._listen(reach, modifier)
         self._reaches.append((reach, modifier))
 
-    def follow(self, playing: bool) -> None:
-        """Take note of whether time runs, and of whether a drag needs Shift."""
-        self._pulling.playing = playing
+    def follow(self, truth: Truth) -> None:
+        """Take note of what is the case, which may end a pull, and of whether a drag needs Shift."""
+        over = self._pulling.follow(truth)
+        if over is not None:
+            self.give_up()
+            if over:
+                self._tell(over)
         modifier = self._panel.modifier
         self._reaches = [(reach, bound) for reach, bound in self._reaches if reach.body.there]
         for reach, bound in self._reaches:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import msgspec
 import numpy as np
 import viser
 
@@ -17,8 +18,9 @@ from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.view_panel import ViewSettings
 from momentum_lab.app.widgets import Post
+from momentum_lab.app.wire import Truth
 from momentum_lab.events import ApplyPushes, HoldPush, LetGo
-from momentum_lab.physics.push import Push
+from momentum_lab.physics.push import MAX_DURATION, Push
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,13 +42,31 @@ class Reach:
 
 @dataclass(slots=True)
 class Pull:
-    """A pull that is going on."""
+    """A pull that is going on.
+
+    Attributes:
+        reach: the robot.
+        grip: what of it.
+        holds: whether it pushes while it goes on.
+        run: in which run it began.
+        held: the piece that was posted last.
+        way: of the hand.
+    """
 
     reach: Reach
     grip: Grip
     holds: bool
+    run: int
     held: Push | None = None
     way: WayBack = field(default_factory=WayBack)
+
+    def has_lasted(self, latest: Push | None) -> bool:
+        """Whether what is held is the latest push of a run, and has lasted as long as a push can."""
+        if latest is None or self.held is None or latest.duration < MAX_DURATION:
+            return False
+        return (
+            msgspec.structs.replace(latest, start=self.held.start, duration=self.held.duration) == self.held
+        )
 
 
 class Pulling:
@@ -74,7 +94,19 @@ class Pulling:
         self._pull: Pull | None = None
         # How long what was held has lasted, and how long pushes were before the panel showed that, s.
         self._durations = (0.0, 0.0)
-        self.playing = True
+        self.playing, self.run = True, -1
+
+    def follow(self, truth: Truth) -> str | None:
+        """Take note of what is the case: why a pull is over without the hand, for people; None while it is not."""
+        self.playing, self.run = truth.playing, truth.run
+        pull = self._pull
+        if pull is None:
+            return None
+        if pull.run != truth.run or not pull.reach.body.there:
+            return ""  # it was another robot, or one that stands again: everybody sees that
+        if pull.has_lasted(truth.push):
+            return f"A push is held for {MAX_DURATION:g} s at most: let go, and grab the robot again."
+        return None
 
     def begin(self, reach: Reach, joint: int, drag: Drag) -> None:
         """Take hold of what moves with a joint.
@@ -83,16 +115,19 @@ class Pulling:
             InputError: a browser has chosen what no widget offers.
         """
         self.drop()
+        if not reach.body.there:
+            return
         held = self._panel.hand.by_hand == "hold" and self.playing
         taken = grip(reach.robot.model, reach.body.drawn, joint, drag.start - reach.offset)
-        self._pull = Pull(reach, taken, held)
+        self._pull = Pull(reach, taken, held, self.run)
         self.move(drag)
 
     def move(self, drag: Drag) -> None:
         """Draw the pull as it is now; a hold gives its force."""
-        if self._pull is None:
+        pull = self._present()
+        if pull is None:
             return  # nothing was grabbed, or it was refused
-        pull, size = self._pull, self._pull.reach.size
+        size = pull.reach.size
         force, scale = self._force(pull, drag)
         if pull.held is not None and "push" in self._settings.shown:
             self._scene.clear()  # the push itself is in the picture
@@ -108,9 +143,10 @@ class Pulling:
 
     def let_go(self, drag: Drag) -> None:
         """What a hand does that opens: the push, or the end of the one that was held."""
-        if self._pull is None:
+        pull = self._present()
+        if pull is None:
             return
-        pull, (force, _) = self._pull, self._force(self._pull, drag)
+        force, _ = self._force(pull, drag)
         self._pull = None
         self._scene.clear()
         if pull.held is not None:
@@ -127,6 +163,12 @@ class Pulling:
         self._scene.clear()
         if pull is not None and pull.held is not None:
             self._post(LetGo())
+
+    def _present(self) -> Pull | None:
+        """The pull that is going on; one on a robot that has left is given up."""
+        if self._pull is not None and not self._pull.reach.body.there:
+            self.drop()
+        return self._pull
 
     def _force(self, pull: Pull, drag: Drag) -> tuple[np.ndarray, Scale]:
         """The force of now (3,), N, which a hold gives if it is another one; and how strong pulls are."""

@@ -19,7 +19,10 @@ from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.view_panel import ViewSettings
-from momentum_lab.events import ApplyPush, ApplyPushes, HoldPush, LetGo
+from momentum_lab.app.visitor import Visitor
+from momentum_lab.events import ApplyPush, ApplyPushes, Branch, HoldPush, LetGo
+from momentum_lab.physics.held_push import Pushed
+from momentum_lab.physics.push import MAX_DURATION, Push
 from momentum_lab.recording import Layout
 from momentum_lab.robot.geometry import LinkMesh
 from momentum_lab.robot.posture import standing_posture
@@ -60,6 +63,10 @@ class Desk:
         self.hand.note(Note(self.reach, self.trunk, phase, places, on_screen))
         if not self.busy:
             self.hand.act()
+
+    def see(self, playing: bool = True, run: int = 0, push: Push | None = None) -> None:
+        """A frame of the session has come."""
+        self.hand.follow(SimpleNamespace(playing=playing, run=run, push=push))
 
     def set(self, label: str, value: object) -> None:
         self.client.gui.widgets[label].set_by_person(value)
@@ -154,6 +161,63 @@ def test_a_hand_can_give_up(desk, way):
     assert [type(event) for event in desk.posted] == [HoldPush, HoldPush, LetGo] * (way == "hold")
 
 
+@pytest.mark.parametrize("way", ["pulse", "hold"])
+def test_a_robot_that_stands_up_again_is_not_pulled_by_the_hand_that_pulled_before(desk, way):
+    desk.set("by hand", way)
+    desk.see(run=3)
+    desk.drag("start", 0.2, 0.0)
+    desk.see(run=3)
+    desk.drag("update", 0.21, 0.0)
+    desk.see(run=4)  # Reset, the same pushes again, another scenario
+    posted = len(desk.posted)
+    assert way == "pulse" or isinstance(desk.posted[-1], LetGo)
+    desk.drag("update", 0.3, 0.0)
+    desk.drag("end", 0.3, 0.0)
+    assert len(desk.posted) == posted
+    assert all(node.removed for name, node in desk.client.scene.nodes.items() if name.startswith("/hand"))
+    desk.drag("start", 0.2, 0.0)
+    desk.see(run=4)
+    desk.drag("end", 0.2, 0.0)
+    assert len(desk.posted) > posted
+
+
+def test_what_was_held_as_long_as_a_push_can_be_does_not_begin_again_with_the_next_move(desk):
+    desk.set("by hand", "hold")
+    desk.drag("start", 0.2, 0.0)
+    (held,) = [event.push for event in desk.posted]
+    for seconds, kinds in ((MAX_DURATION - 0.001, [HoldPush]), (MAX_DURATION, [HoldPush, LetGo])):
+        (latest,) = Pushed().held_from(2.0, held).until(2.0 + seconds, 1e-3)
+        desk.see(run=-1, push=latest)
+        assert [type(event) for event in desk.posted] == kinds
+    assert "10 s at most" in desk.told[0]
+    desk.drag("update", 0.3, 0.0)
+    desk.drag("end", 0.3, 0.0)
+    assert [type(event) for event in desk.posted] == [HoldPush, LetGo]
+    assert len(desk.told) == 1
+
+
+def test_a_robot_that_has_left_gets_no_push_of_its_link(desk):
+    desk.drag("start", 0.2, 0.0)
+    desk.reach.body.remove()
+    desk.drag("end", 0.2, 0.0)
+    desk.drag("start", 0.2, 0.0)
+    desk.drag("end", 0.2, 0.0)
+    assert (desk.posted, desk.told) == ([], [])
+
+
+def test_whoever_goes_on_from_an_earlier_instant_has_let_go(desk):
+    """The session lets go there, too: a hand that still held would begin again with its next move."""
+    desk.set("by hand", "hold")
+    tab = Visitor.__new__(Visitor)
+    tab._demo = SimpleNamespace(demo=SimpleNamespace(touch=lambda: None))
+    tab._panels, tab._link = SimpleNamespace(hand=desk.hand), SimpleNamespace(post=desk.posted.append)
+    desk.drag("start", 0.2, 0.0)
+    tab.post(Branch())
+    desk.drag("update", 0.3, 0.0)
+    desk.drag("end", 0.3, 0.0)
+    assert [type(event) for event in desk.posted] == [HoldPush, LetGo, Branch]
+
+
 def test_up_and_sideways_pulls_up(desk):
     desk.set("pulls", "up and sideways")
     eye = (4.0, 0.0, 1.1)
@@ -232,7 +296,7 @@ def test_a_hold_of_very_many_pieces_can_be_repeated_and_says_what_is_coarser(des
 
 def test_in_a_pause_a_hold_would_last_no_time_and_is_a_pulse(desk):
     desk.set("by hand", "hold")
-    desk.hand.follow(playing=False)
+    desk.see(playing=False)
     desk.drag("start", 0.2, 0.0)
     assert desk.label.text.endswith("waits for play")
     desk.drag("end", 0.2, 0.0)
@@ -296,12 +360,12 @@ def test_without_shift_a_drag_pulls_while_that_is_switched_on(desk):
     assert mesh.dragged == ("left", "shift")
     for modifier in (None, "shift"):
         desk.hand.toggle()
-        desk.hand.follow(playing=True)
+        desk.see(playing=True)
         assert mesh.dragged == ("left", modifier)
         assert len(mesh.callbacks) == 1
     desk.reach.body.remove()
     desk.set("drag pushes the robot", True)
-    desk.hand.follow(playing=True)
+    desk.see(playing=True)
     assert mesh.dragged == ("left", "shift")  # viser refuses new callbacks of what has gone
 
 
@@ -323,7 +387,7 @@ def test_a_switch_that_is_turned_meanwhile_is_followed_in_the_next_frame(desk):
     desk.hand.reach(desk.reach)
     assert mesh.dragged == ("left", "shift")
     for modifier in (None, "shift"):
-        desk.hand.follow(playing=True)
+        desk.see(playing=True)
         assert mesh.dragged == ("left", modifier)
 
 
