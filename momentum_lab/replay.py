@@ -10,9 +10,9 @@ import numpy as np
 
 from momentum_lab.events import SessionEvent
 from momentum_lab.headless import Timing, always, run_headless
-from momentum_lab.recording import Trace
 from momentum_lab.run_file import Run, fingerprint
 from momentum_lab.session import Session
+from momentum_lab.trace import Trace
 
 
 class Script:

@@ -15,9 +15,9 @@ import numpy as np
 
 from momentum_lab.errors import InputError, ScenarioError
 from momentum_lab.events import LoggedEvent, SessionEvent
-from momentum_lab.recording import Trace, load_trace
 from momentum_lab.scenario import MAX_SECONDS, Scenario, check_finite, scenario_from
 from momentum_lab.session import Session
+from momentum_lab.trace import Trace, load_trace
 
 FORMAT, VERSION = "momentum_lab run", 1
 KINDS = (".json", ".toml", ".npz")

@@ -40,6 +40,7 @@ FLOORS: tuple[frozenset[str], ...] = (
             "start",
             "terrain",
             "timeline",
+            "trace",
             "status",
             "headless",
             "summary",

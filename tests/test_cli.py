@@ -33,11 +33,11 @@ from momentum_lab.experiments.figures import FIGURES
 from momentum_lab.experiments.push_limit import PushLimit
 from momentum_lab.physics.mismatch import Mismatch
 from momentum_lab.physics.push import Push
-from momentum_lab.recording import load_trace
 from momentum_lab.robot.catalog import robot_names
 from momentum_lab.run_file import Run
 from momentum_lab.scenario import Scenario, load_scenario, scenario_names
 from momentum_lab.session import Session
+from momentum_lab.trace import load_trace
 from tests.app.test_figures import measurement
 from tests.test_lesson import written
 from tests.test_summary import KEYS

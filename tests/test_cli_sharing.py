@@ -14,11 +14,11 @@ from momentum_lab.control.presets import preset_named
 from momentum_lab.errors import InputError
 from momentum_lab.events import ApplyPush, LoggedEvent, SetGains
 from momentum_lab.physics.push import Push
-from momentum_lab.recording import load_trace
 from momentum_lab.replay import replayed
 from momentum_lab.run_file import Run, encoded, run_of
 from momentum_lab.scenario import Scenario
 from momentum_lab.share_code import to_code
+from momentum_lab.trace import load_trace
 from tests.test_cli import Output, chosen, refusal
 
 

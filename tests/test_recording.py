@@ -15,11 +15,12 @@ from momentum_lab.control.controller import SLACKS
 from momentum_lab.errors import InputError
 from momentum_lab.events import SetGain, SetPriority
 from momentum_lab.provenance import provenance
-from momentum_lab.recording import Layout, Recording, Sample, Trace, load_trace, save_trace, writable_file
+from momentum_lab.recording import Layout, Recording, Sample
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.urdf import robot_data_folder
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
+from momentum_lab.trace import Trace, load_trace, save_trace, writable_file
 from tests.conftest import assert_close
 from tests.runs import PUSH_END, PUSH_START, forward_push, play, played
 

@@ -19,12 +19,12 @@ from momentum_lab.events import (
 from momentum_lab.finished import FinishedRun
 from momentum_lab.physics.push import Push
 from momentum_lab.provenance import provenance
-from momentum_lab.recording import load_trace, save_trace
 from momentum_lab.replay import end_agreement, prepared, replayed, trace_agreement
 from momentum_lab.run_file import Run, run_of, run_of_trace
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
 from momentum_lab.share_code import from_code, to_code
+from momentum_lab.trace import load_trace, save_trace
 
 EVENTS = {
     20: [SetPriority(0.5), SetGains({"linear_damping": 11.0, "linear_stiffness": 30.0})],

@@ -20,7 +20,7 @@ from momentum_lab.lesson.record import LessonRecord, rehearsed
 _PATIENCE = 120.0
 _READING_PATIENCE = 30.0
 # A page that is being opened goes before scripts that are looked through.
-_NICE = 10
+_NICE = 5
 
 
 class Answer(msgspec.Struct, frozen=True):

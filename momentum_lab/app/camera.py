@@ -12,6 +12,8 @@ FIELD_OF_VIEW = math.radians(32.0)
 # Below this width over height the controls cover the lower part of the picture.
 _NARROW = 0.62
 _COVERED = 0.62
+# In a window that is lower than the panels below its picture need, so much of the picture is taken to be free.
+_LEAST_FREE = 0.35
 # From here two robots that stand side by side are seen beside each other, degrees.
 _AZIMUTH_OF_TWO = -42.0
 # Views whose name says from where: two robots are seen from there, too, degrees.
@@ -67,7 +69,7 @@ class Opening:
         if not (width > 0 and height > 0):
             return USUAL
         aspect = width / height
-        return cls(aspect, 1.0 - _COVERED if aspect < _NARROW else 1.0 - covered / height)
+        return cls(aspect, 1.0 - _COVERED if aspect < _NARROW else max(_LEAST_FREE, 1.0 - covered / height))
 
 
 USUAL = Opening(1.5)

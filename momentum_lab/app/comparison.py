@@ -41,6 +41,7 @@ class Comparison:
         self._ghost: Ghost | None = None
         self._paths: list[ForesightScene] = []
         self._foreseen_at = 0.0
+        self._names: tuple[str, str] | None = None
         self.kept: KeptRun | None = None
 
     @property
@@ -134,7 +135,7 @@ class Comparison:
         pushed = truth is not None and truth.push is not None and truth.push.start >= self._foreseen_at
         words = [] if pushed else [path.words for path in self._paths]
         if len(words) > 1 and truth is not None and self._other is not None:
-            names = names_of(truth, self._other)
+            names = self._names or names_of(truth, self._other)
             words = [f"{name}: {each}" for name, each in zip(names, words, strict=True)]
         return f"Tried, not pushed: {'. '.join(words)}." if words else ""
 
@@ -147,8 +148,8 @@ class Comparison:
             self._side = SideScene(self._client, loaded, beside)
             self._side.see_through(settings)
         self._side.draw(beside, other.truth, settings)
-        names = other.names or names_of(first, other.truth)
-        self._side.name(names, (sample["com"], beside["com"]))
+        self._names = other.names or names_of(first, other.truth)
+        self._side.name(self._names, (sample["com"], beside["com"]))
 
     def see_through(self, settings: ViewSettings) -> None:
         """Whether marks inside a body show, as a person has chosen."""

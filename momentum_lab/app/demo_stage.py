@@ -132,7 +132,7 @@ def caption(words: str) -> str:
     return (
         '<div data-demo style="position:fixed;left:50vw;top:2.5vh;transform:translateX(-50%);z-index:50;'
         "width:max-content;box-sizing:border-box;"
-        "max-width:min(92vw,max(22em,100vw - 46rem));padding:.6em 1em;border-radius:.4em;"
+        "max-width:min(92vw,max(22em,100vw - 50rem));padding:.6em 1em;border-radius:.4em;"
         'pointer-events:none;background:#0b4f79;color:#fff;font-size:1.35rem;line-height:1.35;text-align:center">'
         f"{escape(words)}"
         '<div style="font-size:.6em;opacity:.8">The lab plays by itself. Touch it, and it is yours.</div></div>'

@@ -15,9 +15,10 @@ from momentum_lab.errors import InputError, LabError
 from momentum_lab.fall import Fall
 from momentum_lab.finished import FinishedRun
 from momentum_lab.provenance import provenance
-from momentum_lab.recording import Layout, Recording, write_trace
+from momentum_lab.recording import Layout, Recording
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.run_file import encoded
+from momentum_lab.trace import write_trace
 
 # A minute's table on a busy machine takes less, s.
 _PATIENCE = 180.0

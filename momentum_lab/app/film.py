@@ -6,7 +6,7 @@ import math
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -58,12 +58,12 @@ class _Shot:
 
 
 def film(client: viser.ClientHandle, reel: Reel, settings: ViewSettings, lines: int, report: Report) -> bytes:
-    """The run as the tab would show it from where it looks now, as an .mp4 file in simulated time.
+    """The run from where the tab looks now, on a light page, as an .mp4 file in simulated time.
 
     Args:
         client: the browser tab that draws the pictures.
         reel: what to show.
-        settings: which marks, and how.
+        settings: which marks, and how; what is chosen meanwhile is for the next film.
         lines: height of the film, or of the tab's picture if that is lower, pixels.
         report: told the fraction that is done; whatever it raises ends the film.
 
@@ -76,7 +76,7 @@ def film(client: viser.ClientHandle, reel: Reel, settings: ViewSettings, lines: 
         path = Path(folder) / "film.mp4"
         with (
             encoder(path, (shot.width, shot.height), reel.rate) as write,
-            _studio(client, reel, settings) as scene,
+            _studio(client, reel, replace(settings, shown=set(settings.shown))) as scene,
         ):
             for i in range(len(reel.rows)):
                 with client.atomic():

@@ -45,8 +45,12 @@ class LearnFrame:
             self._others = self._gui.add_button_group(" ", (_BACK, _LEAVE), order=5.0, visible=False)
         self._forward.on_click(lambda _: forward())
         self._others.on_click(lambda event: back() if event.target.value == _BACK else leave())
-        self._gui.add_command("Next step of the lesson", hotkey="I").on_trigger(lambda _: forward())
-        self._gui.add_command("Previous step of the lesson", hotkey="U").on_trigger(lambda _: back())
+        self._go_on, self._go_back = forward, back
+
+    def listen(self) -> None:
+        """Give the buttons their keys."""
+        self._gui.add_command("Next step of the lesson", hotkey="I").on_trigger(lambda _: self._go_on())
+        self._gui.add_command("Previous step of the lesson", hotkey="U").on_trigger(lambda _: self._go_back())
 
     def head(self, walk: Walk) -> None:
         """Title, question and place of the step that is open."""

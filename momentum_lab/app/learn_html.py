@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 
-from momentum_lab.app.learn_style import BLUE, GREEN, LIST, RED, STYLE
+from momentum_lab.app.learn_style import BLUE, GREEN, INK, LIST, MINE, PALE, RED, STYLE
 from momentum_lab.lesson.equation import symbol_mathml
 from momentum_lab.lesson.record import EquationRecord, StepRecord
 
@@ -122,7 +122,7 @@ def _box(inner: str) -> str:
 
 
 def _yours() -> str:
-    return f' <span style="color:{BLUE};white-space:nowrap">← your prediction</span>'
+    return f' <span style="color:{MINE};white-space:nowrap">← your prediction</span>'
 
 
 def _compared_choice(step: StepRecord, mine: int | None) -> str:
@@ -157,10 +157,11 @@ def _line(step: StepRecord, mine: float) -> str:
         '<svg width="100%" viewBox="0 0 300 34" role="img" aria-label="prediction and measurement on a line">'
         '<path d="M10 14H290" stroke="#9aa3ab" stroke-width="2"/>'
         f'<circle cx="{yours:.0f}" cy="14" r="6" fill="#fff" stroke="{BLUE}" stroke-width="2.5"/>'
-        f'<path d="M{found:.0f} 6l7 8-7 8-7-8z" fill="#222"/>'
-        f'<text x="10" y="32" font-size="10" fill="#6b6b6b">{step.low:g}</text>'
-        f'<text x="290" y="32" font-size="10" fill="#6b6b6b" text-anchor="end">{step.high:g}</text>'
-        f'<text x="150" y="32" font-size="10" fill="#6b6b6b" text-anchor="middle">○ you · ◆ measured</text></svg>'
+        f'<path d="M{found:.0f} 6l7 8-7 8-7-8z" style="fill:{INK}"/>'
+        f'<text x="10" y="32" font-size="10" style="fill:{PALE}">{step.low:g}</text>'
+        f'<text x="290" y="32" font-size="10" style="fill:{PALE}" text-anchor="end">{step.high:g}</text>'
+        f'<text x="150" y="32" font-size="10" style="fill:{PALE}" text-anchor="middle">○ you · ◆ measured</text>'
+        "</svg>"
     )
 
 

@@ -66,7 +66,8 @@ class LearnPanel:
         self._frame = LearnFrame(client, tab, self._next, self._back, self._leave)
 
     def start(self, first: Path | None = None) -> None:
-        """Show the list, or open a lesson; what the browser remembers is asked for meanwhile."""
+        """Listen to keys, show the list or open a lesson; what the browser remembers is asked for meanwhile."""
+        self._frame.listen()
         threading.Thread(target=self._start, args=(first,), name="lessons", daemon=True).start()
 
     def close(self) -> None:

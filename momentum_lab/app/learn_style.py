@@ -5,6 +5,8 @@ from __future__ import annotations
 from momentum_lab.app.html import COLORS
 
 BLUE, GREEN, RED = "#0072b2", COLORS["green"], COLORS["vermillion"]
+# On a dark page the style sheet below gives these names lighter colours.
+MINE, INK, PALE = "var(--learn-mine,#0072b2)", "var(--learn-ink,#222222)", "var(--learn-pale,#6b6b6b)"
 LIST = '<span class="learn-list"></span>'
 """Buttons after it look like a list."""
 WAY = '<span class="learn-way"></span>'
@@ -38,6 +40,7 @@ _CHOICES = (
     "overflow:visible;padding:.3em .2em;line-height:1.3;font-weight:450;font-size:1.08em}"
 )
 _AT_NIGHT = (
+    f"{_DARK_PAGE}{{--learn-mine:#7cc4f0;--learn-ink:#f0f0f0;--learn-pale:#a6a6a6}}"
     f"{_DARK} .q,{_DARK} mtext{{color:#7cc4f0}}{_DARK} .dim{{color:#a6a6a6}}"
     f"{_DARK} .o{{border-color:#4a5057}}{_DARK} .o.mine{{background:#16384d}}"
     f"{_DARK} .bar{{background:#3a3f45}}{_DARK} .card{{background:#2b2f34}}"

@@ -32,12 +32,11 @@ class LeftRuns:
         opened = Playback(run, same)
         opened.speed = stage.speed
         opened.run = stage.run + 1  # neighbours on stage must be told apart
-        if session.log:
-            self._left = (*self._left, stage)[-_MOST:]
+        self._keep(stage)
         return opened
 
     def take_back(self, stage: Playback) -> Playback:
-        """The last run that was left, as it was left.
+        """The last run that was left, as it was left; the one on stage can be taken back in turn.
 
         Raises:
             InputError: there is none.
@@ -46,5 +45,10 @@ class LeftRuns:
             raise InputError("take back", "no run", "one in whose place another has been opened")
         *left, last = self._left
         self._left = tuple(left)
+        self._keep(stage)
         last.run = stage.run + 1
         return last
+
+    def _keep(self, stage: Playback) -> None:
+        if stage.session.log:
+            self._left = (*self._left, stage)[-_MOST:]

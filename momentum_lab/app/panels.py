@@ -1,4 +1,4 @@
-"""All panels of one browser tab: status and tabs on the right, plots and lessons on the left, keys for everything."""
+"""All panels of one browser tab: tabs right, plots and lessons left, status and time below, keys for everything."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import viser
 
-from momentum_lab.app import access_html, html, look_html, share_html, typed_html
+from momentum_lab.app import access_html, html, keyboard_html, look_html, share_html, typed_html
 from momentum_lab.app.appearance import Appearance, dress
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.demo_panel import DemoPanel
@@ -111,6 +111,7 @@ class Panels:
         demo.furnish()
         appearance.add_ear(gui)
         gui.add_html(access_html.NAMES + typed_html.TYPED + look_html.STYLE + ON_A_PHONE)
+        gui.add_html(keyboard_html.KEYS)
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
         left = gui.add_panel()
         # The browser opens the first tab; a phone has no room for plots beside the picture.
@@ -133,9 +134,9 @@ class Panels:
             (left.minimize if lesson is None else left.expand)()
 
         self._gui, self._group, self._roomy = gui, group, plan.roomy
+        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
         # The list of commands has them in this order: what is used most comes first.
         add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
-        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
         self.learn.start(lesson)
         demo.listen()
 

@@ -132,7 +132,7 @@ class Pulling:
         if pull.held is not None and "push" in self._settings.shown:
             self._scene.clear()  # the push itself is in the picture
             return
-        home = "back here: no push" if pull.way.left and force.any() and not pull.holds else ""
+        home = "back here: no push" if pull.way.left and force.any() else ""
         words = _words(pull, force, scale, self.playing)
         self._scene.draw(drag.start, scale.length(force), words, home, size)
 
@@ -175,7 +175,9 @@ class Pulling:
         robot, strongest = pull.reach.robot.model, self._panel.form.strongest
         scale = Scale.of(robot, pull.reach.size, self._settings.arrow_scale, strongest)
         distance = self._panel.hand.pulled(drag.eye, drag.start, drag.end)
-        force = scale.force(np.zeros(3) if pull.way.is_back(drag.off) else distance)
+        # What is held acts at once: it has to grow weaker without a step, and cannot be taken back.
+        given_up = not pull.holds and pull.way.is_back(drag.off)
+        force = scale.force(np.zeros(3) if given_up else distance)
         if pull.holds:
             self._hold(pull, pull.grip.piece(force, scale.strongest))
         return force, scale

@@ -78,10 +78,13 @@ class SharePanel:
         gui: where they go.
         sharing: what they ask for.
         address: the hidden text that holds the page's address when it carries a code.
+        clock: seconds, for tests.
     """
 
-    def __init__(self, gui: viser.GuiApi, sharing: Sharing, address: Any) -> None:
-        self._sharing = sharing
+    def __init__(
+        self, gui: viser.GuiApi, sharing: Sharing, address: Any, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._sharing, self._clock = sharing, clock
         self._busy = threading.Lock()
         self._told = ""
         gui.add_html(html.sentence(_INTRODUCTION))
@@ -181,7 +184,7 @@ class SharePanel:
     def _film(self, taken: RunTaken, lines: int) -> bytes:
         self._stopped.clear()
         self._stop.visible = True
-        percents, begun = set[int](), time.monotonic()
+        percents, begun = set[int](), self._clock()
 
         def report(fraction: float) -> None:
             if self._stopped.is_set():
@@ -189,7 +192,7 @@ class SharePanel:
             percent = int(100.0 * fraction)
             if percent not in percents:
                 percents.add(percent)
-                self._show(f"film: {percent} % taken{_left(fraction, begun)}. {_IN_SIGHT}")
+                self._show(f"film: {percent} % taken{_left(fraction, self._clock() - begun)}. {_IN_SIGHT}")
 
         try:
             return self._sharing.film(taken, lines, report)
@@ -208,9 +211,9 @@ def file_name(run: Run) -> str:
     return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")[:80] or "run"
 
 
-def _left(fraction: float, begun: float) -> str:
+def _left(fraction: float, passed: float) -> str:
     """How long a film still takes, for people, if it goes on as since it was begun."""
-    seconds = (time.monotonic() - begun) * (1.0 / fraction - 1.0) if fraction else 0.0
+    seconds = passed * (1.0 / fraction - 1.0) if fraction else 0.0
     return f", {math.ceil(seconds / 60.0)} min to go" if seconds > 90.0 else f", {seconds:.0f} s to go"
 
 

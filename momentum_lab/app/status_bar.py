@@ -1,4 +1,4 @@
-"""Above the tabs: how the robot is doing, how time runs, and the buttons that run it."""
+"""Below the picture, or above the tabs: how the robot is doing, how time runs, and the buttons that run it."""
 
 from __future__ import annotations
 

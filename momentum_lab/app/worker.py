@@ -149,8 +149,7 @@ class Worker:
             self._notices.append(str(error))
         playback = self._playback
         if playback.run != run:
-            self._history.clear()
-            self._other_history.clear()
+            self._forget()
         if playback is not before:
             self._history += _rows(playback.session.recording)
             if playback.beside is not None:
@@ -172,11 +171,16 @@ class Worker:
             run = playback.run
             playback.tick(1)
             if playback.run != run:
-                self._history.clear()
-                self._other_history.clear()
+                self._forget()
             if playback.session.ticks % HISTORY_EVERY == 0:
                 self._remember()
         self._news = self._news or due > 0
+
+    def _forget(self) -> None:
+        """What has been sent, or belongs to another run, is told to nobody."""
+        self._history.clear()
+        self._other_history.clear()
+        self._foreseen = ()
 
     def _remember(self) -> None:
         beside = self._playback.beside
@@ -217,9 +221,7 @@ class Worker:
             demo=self._room.in_demo,
             left=self._room.left,
         )
-        self._history.clear()
-        self._other_history.clear()
-        self._foreseen = ()
+        self._forget()
         self._notices.clear()
         self._taken = self._news = False
         self._next_frame = max(self._next_frame + 1.0 / FRAMES_PER_SECOND, now)

@@ -13,9 +13,9 @@ from momentum_lab.cli.run import played, played_beside
 from momentum_lab.errors import InputError
 from momentum_lab.finished import FinishedRun
 from momentum_lab.headless import Timing
-from momentum_lab.recording import writable_file, write_whole
 from momentum_lab.run_file import Run
 from momentum_lab.session import Session
+from momentum_lab.trace import writable_file, write_whole
 
 _ENDINGS = ".html (plays in any browser) or .viser (for viser's player)"
 

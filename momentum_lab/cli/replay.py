@@ -11,10 +11,10 @@ import msgspec
 from momentum_lab.cli.run import played, said
 from momentum_lab.errors import InputError
 from momentum_lab.provenance import versions
-from momentum_lab.recording import Trace, load_trace
 from momentum_lab.replay import Agreement, end_agreement, trace_agreement
 from momentum_lab.run_file import KINDS, Run, read_run, run_of_trace
 from momentum_lab.session import Session
+from momentum_lab.trace import Trace, load_trace
 
 
 def replay(args: Namespace) -> int:

@@ -10,7 +10,7 @@ from momentum_lab.cli.choices import chosen_run
 from momentum_lab.cli.run import played
 from momentum_lab.errors import InputError
 from momentum_lab.finished import FinishedRun
-from momentum_lab.recording import writable_file, write_whole
+from momentum_lab.trace import writable_file, write_whole
 
 
 def report(args: Namespace) -> int:

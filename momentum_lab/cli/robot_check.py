@@ -14,12 +14,12 @@ from rich.table import Table
 from momentum_lab.cli.progress import interruptible, progress
 from momentum_lab.errors import InputError, RobotError
 from momentum_lab.experiments.robot_check import RATIO, Trial, trials
-from momentum_lab.recording import writable_file
 from momentum_lab.robot.catalog import RobotSpec, load_spec, robot_names
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.proposal import Remark, propose
 from momentum_lab.robot.urdf import robot_data_folder
 from momentum_lab.robot.writing import robot_toml
+from momentum_lab.trace import writable_file
 
 _FALLS = 1
 

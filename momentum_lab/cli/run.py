@@ -18,11 +18,11 @@ from momentum_lab.cli.progress import interruptible, progress
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.headless import Timing, run_headless
 from momentum_lab.provenance import provenance
-from momentum_lab.recording import save_trace, writable_file
 from momentum_lab.replay import Agreement, Script, end_agreement, prepared
 from momentum_lab.run_file import Run
 from momentum_lab.session import Session
 from momentum_lab.summary import Summary, summarize
+from momentum_lab.trace import save_trace, writable_file
 
 if TYPE_CHECKING:
     from momentum_lab.cli.beside import Second

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueGains
+from momentum_lab.control.computed_torque import ComputedTorque
+from momentum_lab.control.computed_torque_gains import ComputedTorqueGains
 from momentum_lab.control.controller import Controller
 from momentum_lab.control.placo_wbc import PlacoWbc, PlacoWbcGains
 from momentum_lab.control.planner import OWN, PLANNERS, planner_named

@@ -14,7 +14,7 @@ import numpy as np
 
 from momentum_lab.errors import InputError
 from momentum_lab.experiments.claims import Columns
-from momentum_lab.recording import writable_file
+from momentum_lab.trace import writable_file
 
 _DOTS_PER_INCH = 120
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from momentum_lab.app.camera import LOOSE, TIGHT, USUAL, VIEWS, Camera, Opening, camera_pose
+from momentum_lab.app.page_plan import BAR_HEIGHT
 from momentum_lab.lesson import parts
 from tests.app.fakes import FakeClient
 
@@ -46,10 +47,22 @@ def test_on_a_phone_the_robot_is_above_the_controls():
 @pytest.mark.parametrize("name", VIEWS)
 def test_a_bar_covers_nothing_that_a_view_shows(name):
     client, view = FakeClient(), VIEWS[name]
-    target, position = camera_pose(view, 0.88, np.zeros(2), Opening.of(client, 160.0))
-    # 160 of 800 pixels are covered: what is below -0.6 in a picture from -1 to 1.
-    assert seen(np.array([0.0, 0.0, view.low * 0.88]), target, position, 1.6)[1] > -0.62
+    edge = -1.0 + 2.0 * BAR_HEIGHT / 800.0  # of the bar, in a picture of 800 pixels from -1 to 1
+    target, position = camera_pose(view, 0.88, np.zeros(2), Opening.of(client, BAR_HEIGHT))
+    assert seen(np.array([0.0, 0.0, 0.97 * view.low * 0.88]), target, position, 1.6)[1] > edge
     assert seen(np.array([0.0, 0.0, 0.93 * view.high * 0.88]), target, position, 1.6)[1] < 1.0
+
+
+@pytest.mark.parametrize("height", [1, 100, 150, 160])
+def test_a_window_that_is_lower_than_its_bar_shows_the_robot_upright(height):
+    client = FakeClient()
+    client.camera.image_height = height
+    target, position = camera_pose(VIEWS["Whole robot"], 0.88, np.zeros(2), Opening.of(client, BAR_HEIGHT))
+    assert 0.5 < np.linalg.norm(position - target) < 1e3
+    assert (
+        seen(np.array([0.0, 0.0, 1.0]), target, position, 1.6)[1]
+        > seen(np.zeros(3), target, position, 1.6)[1]
+    )
 
 
 def test_a_push_forward_points_to_the_right_of_the_picture():

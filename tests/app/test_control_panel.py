@@ -11,7 +11,7 @@ import pytest
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.tuning_panel import changed_gains
-from momentum_lab.control.computed_torque import ComputedTorqueGains
+from momentum_lab.control.computed_torque_gains import ComputedTorqueGains
 from momentum_lab.control.controller import SLACKS
 from momentum_lab.control.gains import GainInfo, declared_gains
 from momentum_lab.events import (

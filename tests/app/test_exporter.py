@@ -18,9 +18,9 @@ from momentum_lab.beside import Beside
 from momentum_lab.errors import InputError
 from momentum_lab.events import ApplyPush
 from momentum_lab.physics.push import Push
-from momentum_lab.recording import load_trace
 from momentum_lab.run_file import decoded, run_of_trace
 from momentum_lab.scenario import Scenario
+from momentum_lab.trace import load_trace
 
 
 @pytest.fixture(scope="module")

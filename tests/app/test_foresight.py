@@ -79,6 +79,7 @@ def test_the_worker_answers_once_and_time_goes_on():
     found = [frame for frame in pipe.frames if frame.foreseen]
     parts = [frame.foreseeing for frame in pipe.frames if frame.foreseeing is not None]
     assert found[0].foreseeing is None
+    assert parts
     assert parts == sorted(parts)
     assert len(found) == 1
     assert pipe.frames[-1].late_ticks == 0

@@ -252,6 +252,14 @@ def test_a_held_push_follows_the_hand_and_ends_with_it(desk):
     assert all(push.point == pushes[0].point for push in pushes)
 
 
+def test_a_held_push_grows_weaker_without_a_step(desk):
+    desk.set("by hand", "hold")
+    for x in (0.03, 0.2, 0.04):
+        desk.drag("start" if x == 0.03 else "update", x, 0.0)
+    forces = [event.push.force for event in desk.posted]
+    assert forces[-1] == pytest.approx(0.2 * forces[1], abs=0.02 * desk.panel.form.strongest)
+
+
 def test_what_was_held_can_be_repeated_piece_by_piece(desk):
     desk.set("by hand", "hold")
     desk.drag("start", 0.1, 0.0)

@@ -76,6 +76,19 @@ def test_the_last_few_are_kept(g1: RobotModel) -> None:
     assert left.take_back(stage).session.scenario.name == "b"
 
 
+def test_what_was_done_in_an_opened_run_can_be_taken_back_in_turn(g1: RobotModel) -> None:
+    room = Classroom(mine(g1))
+    room.take(OTHER)
+    room.take(SetPriority(0.2))
+    room.stage.tick(40)
+    opened = room.stage
+    room.take(TakeBack())
+    assert room.stage.session.scenario.name == "mine"
+    assert room.left == ("other until 0.03 s",)  # it stops where it ended
+    room.take(TakeBack())
+    assert room.stage is opened
+
+
 def test_a_worker_sends_all_of_what_has_been_taken_back() -> None:
     answers = [[FrameTaken()]] * 2 + [[FrameTaken(), ApplyPush(Push(force=100.0))]] + [[FrameTaken()]] * 3
     answers += [[FrameTaken(), OpenRun(Run(Scenario("other")))]] + [[FrameTaken()]] * 3

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from momentum_lab.app import access_html, look_html
+from momentum_lab.app import access_html, keyboard_html, look_html
 from momentum_lab.app.bare_client import BareClient, Received
 from momentum_lab.app.demo_stage import COMMAND, LISTENER
 from momentum_lab.app.help_page import keys_in_help
@@ -101,8 +101,9 @@ def test_help_explains_every_key_of_the_palette(client):
 
 
 def test_a_page_names_its_widgets_and_listens_for_a_person(client):
-    pieces = "".join(props["content"] for props in kept(client).props("GuiHtmlMessage"))
-    assert [pieces.count(piece) for piece in (access_html.NAMES, look_html.STYLE, LISTENER)] == [1, 1, 1]
+    page = "".join(props["content"] for props in kept(client).props("GuiHtmlMessage"))
+    once = (access_html.NAMES, look_html.STYLE, keyboard_html.KEYS, LISTENER)
+    assert [page.count(piece) for piece in once] == [1, 1, 1, 1]
 
 
 def test_dark_page_has_a_dark_floor_and_light_comes_back(client):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable
 from types import SimpleNamespace
@@ -41,7 +42,7 @@ class Desk:
             self.said.append,
             self.warned.append,
         )
-        self.panel = SharePanel(self.gui, sharing, self.address)
+        self.panel = SharePanel(self.gui, sharing, self.address, clock=itertools.count(0.0, 10.0).__next__)
 
     def film(self, taken: RunTaken, height: int, report: Callable[[float], None]) -> bytes:
         for done in (0.25, 0.5, 1.0):
@@ -166,7 +167,9 @@ def test_a_film_says_how_far_it_is(desk, what, height):
     desk.gui.widgets["file"].value = what
     desk.do("Download")
     assert [re.findall(r"\d+ %", line) for line in desk.lines] == [["25 %"], ["50 %"], ["100 %"]]
-    assert all("0 s to go" in line for line in desk.lines)
+    # A picture every ten seconds, and three quarters, a half, nothing left.
+    left = [re.findall(r"\d+ s to go", line) for line in desk.lines]
+    assert left == [["30 s to go"], ["20 s to go"], ["0 s to go"]]
     assert desk.sent == {"my-run-g1.mp4": b"film of %d" % height}
     assert not desk.gui.html[-1].visible
     assert not desk.gui.widgets["Stop the film"].visible

@@ -1,4 +1,4 @@
-"""The line above the tabs: readable, truthful, and with the right buttons."""
+"""Status and time: readable, truthful, and with the right buttons."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from momentum_lab.app.widgets import Bound, nice_step
-from momentum_lab.control.computed_torque import ComputedTorqueGains
+from momentum_lab.control.computed_torque_gains import ComputedTorqueGains
 from momentum_lab.control.gains import declared_gains
 from momentum_lab.events import SetPriority
 from tests.app.fakes import FakeHandle

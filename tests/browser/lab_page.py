@@ -17,8 +17,8 @@ from playwright.sync_api import Locator, Page, expect
 PATIENCE = 60_000
 # Heights of a page, px: half as many pixels are drawn twice as fast, where no picture is looked at.
 LOW, TALL = 400, 800
-# The canvas between the docked panels of a page of 1280 by TALL pixels.
-CANVAS = {"x": 380, "y": 10, "width": 520, "height": 780}
+# The canvas between the docked panels and above the bar, whose clock runs, of a page of 1280 by TALL pixels.
+CANVAS = {"x": 380, "y": 10, "width": 520, "height": 620}
 # A picture that is the same after this is at rest, ms: messages that are processed are drawn in the next frame.
 _REST = 300
 
@@ -97,7 +97,7 @@ class LabPage:
 
     def slide(self, label: str, key: str) -> None:
         """Focus the slider of a label and press a key on it."""
-        row = self.page.locator(f"label:text-is('{label}')").first
+        row = self.page.locator("label").filter(has_text=re.compile(f"^{re.escape(label)}$")).first
         uuid = row.get_attribute("for", timeout=PATIENCE)
         slider = self.page.locator(f"[id='{uuid}'] [role=slider]").first
         expect(slider).to_be_visible(timeout=PATIENCE)

@@ -54,7 +54,7 @@ SHOTS = (
     Shot("push", push),
     Shot("feet", feet, (), 0),
     Shot("pair", pair, ("right",)),
+    Shot("lesson4", readme_lessons.explained("4"), ("left",)),
     Shot("lesson7", readme_lessons.compared("7"), ("left",)),
     Shot("lesson9", readme_lessons.explained("9"), ("left",)),
-    Shot("lesson11", readme_lessons.explained("11"), ("left",)),
 )

@@ -9,9 +9,10 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 import viser
-from playwright.sync_api import expect
+from playwright.sync_api import FloatRect, Locator, expect
 
 from momentum_lab.app.camera import START_VIEW, Camera
+from momentum_lab.app.page_plan import BAR_HEIGHT
 from momentum_lab.app.profile import TEST
 from momentum_lab.app.status_bar import INVITATION
 from momentum_lab.app.world import add_world
@@ -61,6 +62,7 @@ def test_a_robot_stands_in_the_picture(served: Served, empty_url: str, open_page
         lab.expect_ticks(plot)
     with_robot = lab.picture(CANVAS)
     lab.save(OUTPUT / "standing_test.png")
+    assert_below_the_picture(lab)
     lab.page.close()
     empty = open_page(empty_url, height=TALL)
     expect(empty.page.get_by_text("nothing")).to_be_visible(timeout=PATIENCE)
@@ -189,11 +191,30 @@ def test_on_a_phone(served: Served, open_page: Opener) -> None:
     lab = open_page(served.url, 390, 844).until_furnished()
     pause_in_saturation(lab)
     lab.save(OUTPUT / "phone_test.png")
+    assert box_of(lab.status)["y"] < box_of(lab.page.get_by_role("tab", name="Push"))["y"]
     for words in ("Push (P)", "+20 ms"):
-        box = lab.page.get_by_role("button", name=words, exact=True).first.bounding_box()
-        assert box is not None
+        box = box_of(lab.page.get_by_role("button", name=words, exact=True).first)
         assert box["x"] >= 0
         assert box["x"] + box["width"] <= 390
+
+
+def assert_below_the_picture(lab: LabPage) -> None:
+    """Status, time and its buttons stand between the panels, and lower than whatever the start view shows."""
+    canvas = box_of(lab.page.locator("canvas").first)
+    for place in (
+        lab.status,
+        *(lab.page.get_by_role("button", name=name, exact=True) for name in ("Pause", "1/8")),
+    ):
+        box = box_of(place)
+        assert canvas["x"] <= box["x"] < box["x"] + box["width"] <= canvas["x"] + canvas["width"]
+        assert canvas["y"] + canvas["height"] - BAR_HEIGHT <= box["y"] < canvas["y"] + canvas["height"]
+
+
+def box_of(place: Locator) -> FloatRect:
+    """Where something is on the page."""
+    box = place.bounding_box()
+    assert box is not None
+    return box
 
 
 def settled_children(pid: int) -> set[int]:

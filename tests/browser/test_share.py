@@ -14,11 +14,11 @@ from playwright.sync_api import Download, expect
 
 from momentum_lab.events import ApplyPush, LoggedEvent, SetGains
 from momentum_lab.physics.push import Push
-from momentum_lab.recording import load_trace
 from momentum_lab.replay import replayed, trace_agreement
 from momentum_lab.run_file import Run, read_run, run_of, run_of_trace
 from momentum_lab.scenario import Scenario
 from momentum_lab.share_code import from_code, link, to_code
+from momentum_lab.trace import load_trace
 from tests.browser.conftest import OUTPUT, Opener, Served
 from tests.browser.lab_page import PATIENCE, TALL, LabPage
 

@@ -8,7 +8,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueGains
+from momentum_lab.control.computed_torque import ComputedTorque
+from momentum_lab.control.computed_torque_gains import ComputedTorqueGains
 from momentum_lab.control.gains import with_gains
 from momentum_lab.momentum.support import nearest_in_polygon
 from momentum_lab.physics.push import Push

@@ -9,7 +9,8 @@ import pinocchio as pin
 import pytest
 
 from momentum_lab.control import computed_torque
-from momentum_lab.control.computed_torque import ComputedTorque, ComputedTorqueGains
+from momentum_lab.control.computed_torque import ComputedTorque
+from momentum_lab.control.computed_torque_gains import ComputedTorqueGains
 from momentum_lab.control.controller import JointMotion
 from momentum_lab.control.fallback import HOLD_IN_WORDS, hold, hold_posture, limp
 from momentum_lab.errors import SolverError

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from momentum_lab.control.computed_torque import ComputedTorqueGains
+from momentum_lab.control.computed_torque_gains import ComputedTorqueGains
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.momentum.centroidal import momentum_rate
 from momentum_lab.momentum.directions import NAMES, directions

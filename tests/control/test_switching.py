@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from momentum_lab.events import SelectController, SetDirections
 from momentum_lab.momentum.directions import ALL
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
-from momentum_lab.session import Session
+from momentum_lab.session import Session, Snapshot
 from tests.runs import CHAPTER_PUSH
 
 PAIRS = list(itertools.permutations(CONTROLLERS, 2))
@@ -23,15 +24,25 @@ SWITCH = 450
 ENOUGH = 1200
 
 
-def switched(robot, first: str, second: str) -> Session:
-    """Half the chapter's push to the left and behind, then another controller while the robot recovers."""
+@lru_cache(maxsize=len(CONTROLLERS))
+def recovering(robot, controller: str) -> tuple[Session, Snapshot]:
+    """Half the chapter's push to the left and behind, and where the robot is while it recovers; played once."""
     push = Push(force=0.5 * CHAPTER_PUSH[robot.spec.name], direction_deg=40.0, start=0.1)
-    scenario = Scenario("switch", robot=robot.spec.name, controller=first, seconds=1.2, pushes=(push,))
+    scenario = Scenario("switch", robot=robot.spec.name, controller=controller, seconds=1.4, pushes=(push,))
     session = Session(scenario, robot=robot)
-    for tick in range(ENOUGH):
-        if tick == SWITCH:
-            session.post(SelectController(second))
+    for _ in range(SWITCH):
         session.tick()
+    return session, session.snapshot()
+
+
+def switched(robot, first: str, second: str) -> Session:
+    """Another controller while the robot recovers."""
+    session, snapshot = recovering(robot, first)
+    session.resume(snapshot)
+    session.post(SelectController(second))
+    for _ in range(ENOUGH - SWITCH):
+        session.tick()
+    assert len(session.recording) == ENOUGH
     return session
 
 
@@ -72,10 +83,9 @@ def test_a_fresh_start_has_nothing_to_hand_over(robot):
 @pytest.mark.parametrize("text", ["linear+kz", "linear"])
 def test_directions_of_momentum_change_without_a_jump(robot, controller, text):
     """Section 5.3.1 in mid-run: asking for fewer directions, and for all again."""
-    push = Push(force=0.5 * CHAPTER_PUSH[robot.spec.name], direction_deg=40.0, start=0.1)
-    scenario = Scenario("goal", robot=robot.spec.name, controller=controller, seconds=1.4, pushes=(push,))
-    session = Session(scenario, robot=robot)
-    for tick in range(1400):
+    session, snapshot = recovering(robot, controller)
+    session.resume(snapshot)
+    for tick in range(SWITCH, 1400):
         if tick in (SWITCH, SWITCH + 400):
             session.post(SetDirections(text if tick == SWITCH else "all"))
         session.tick()

@@ -10,6 +10,7 @@ import pinocchio as pin
 import pytest
 
 from momentum_lab.errors import RobotError
+from momentum_lab.robot import posture
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.posture import LIFT, MARGIN, standing_posture
 from momentum_lab.robot.state import Dynamics, State
@@ -155,6 +156,27 @@ def test_the_same_question_gets_the_same_bits(any_robot: RobotModel, stance: tup
     first = standing_posture(any_robot, stance)
     standing_posture(any_robot, ("right",))
     assert np.array_equal(standing_posture(RobotModel(any_robot.spec), stance), first)
+
+
+def test_a_posture_is_solved_once_and_its_bits_are_nobodys_to_change(
+    talos: RobotModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fresh, solved = RobotModel(talos.spec), []
+    solve = posture._solve
+
+    def counted(*arguments) -> np.ndarray:
+        solved.append(arguments)
+        return solve(*arguments)
+
+    monkeypatch.setattr(posture, "_solve", counted)
+    first = standing_posture(fresh)
+    kept = first.copy()
+    first[:] = 0.0
+    assert np.array_equal(standing_posture(fresh), kept)
+    assert len(solved) == 1
+    raised = [pin.SE3(np.eye(3), place + (0.0, 0.0, 0.02)) for place in posture.home_places(fresh)]
+    assert not np.array_equal(standing_posture(fresh, places=raised), kept)
+    assert len(solved) == 2
 
 
 def test_all_feet_are_the_default(talos: RobotModel) -> None:
