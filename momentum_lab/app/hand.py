@@ -16,6 +16,7 @@ from typing import Any
 from momentum_lab.app.hand_panel import HandPanel
 from momentum_lab.app.pull import Drag
 from momentum_lab.app.pulling import Pulling, Reach
+from momentum_lab.app.wire import Truth
 from momentum_lab.errors import InputError
 
 
@@ -55,17 +56,22 @@ class Hand:
 
     def reach(self, reach: Reach) -> None:
         """Let a robot be grabbed."""
-        self._listen(reach)
-        self._reaches.append((reach, self._panel.modifier))
+        modifier = self._panel.modifier  # a browser may change it at any moment: it is read once
+        self._listen(reach, modifier)
+        self._reaches.append((reach, modifier))
 
-    def follow(self, playing: bool) -> None:
-        """Take note of whether time runs, and of whether a drag needs Shift."""
-        self._pulling.playing = playing
+    def follow(self, truth: Truth) -> None:
+        """Take note of what is the case, which may end a pull, and of whether a drag needs Shift."""
+        over = self._pulling.follow(truth)
+        if over is not None:
+            self.give_up()
+            if over:
+                self._tell(over)
         modifier = self._panel.modifier
         self._reaches = [(reach, bound) for reach, bound in self._reaches if reach.body.there]
         for reach, bound in self._reaches:
             if bound != modifier:
-                self._listen(reach)
+                self._listen(reach, modifier)
         self._reaches = [(reach, modifier) for reach, _ in self._reaches]
 
     def toggle(self) -> None:
@@ -94,7 +100,7 @@ class Hand:
             finally:
                 self._acting.release()
 
-    def _listen(self, reach: Reach) -> None:
+    def _listen(self, reach: Reach, modifier: str | None) -> None:
         async def note(joint: int, event: Any) -> None:
             camera = event.client.camera
             places = (event.start_position, event.end_position, camera.position)
@@ -103,17 +109,18 @@ class Hand:
             self.note(Note(reach, joint, event.phase, places, on_screen))
             asyncio.get_running_loop().run_in_executor(None, self.act)
 
-        reach.body.on_drag(note, self._panel.modifier)
+        reach.body.on_drag(note, modifier)
 
     def _work_off(self) -> None:
-        """Do all notes; of several moves only the last one counts."""
+        """Do all notes; of several moves only the last one pulls, the others tell which way it took."""
         while self._notes:
             note = self._notes.popleft()
             after = self._notes[0] if self._notes else None
-            if note and after and note.phase == after.phase == "update":
-                continue
             try:
-                self._take(note)
+                if note and after and note.phase == after.phase == "update":
+                    self._pulling.pass_by(Drag.checked(note.places, note.on_screen))
+                else:
+                    self._take(note)
             except InputError as error:
                 self._pulling.drop()
                 self._tell(str(error))

@@ -9,7 +9,7 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.pull import lifted, pulled
-from momentum_lab.errors import InputError
+from momentum_lab.app.widgets import one_of
 
 MODIFIER: Final = "shift"
 """What a hand that pulls holds down, unless a drag pushes anyway."""
@@ -52,7 +52,7 @@ class HandPanel:
         Raises:
             InputError: a browser has chosen something else.
         """
-        return _one_of(self._by_hand, "by hand", _BY_HAND)
+        return one_of(self._by_hand, "by hand", _BY_HAND)
 
     @property
     def pulled(self) -> Callable[..., Any]:
@@ -61,7 +61,7 @@ class HandPanel:
         Raises:
             InputError: a browser has chosen something else.
         """
-        return _PLANES[_one_of(self._plane, "pulls", tuple(_PLANES))]
+        return _PLANES[one_of(self._plane, "pulls", tuple(_PLANES))]
 
     @property
     def modifier(self) -> str | None:
@@ -72,9 +72,3 @@ class HandPanel:
         """Let a drag push the robot, or turn the picture again."""
         self._plain.value = not self._plain.value
         self._redraw()
-
-
-def _one_of(widget: Any, name: str, allowed: tuple[str, ...]) -> str:
-    if widget.value not in allowed:
-        raise InputError(name, widget.value, f"one of {', '.join(allowed)}")
-    return str(widget.value)

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import msgspec
 import numpy as np
 
+from momentum_lab.app.instants import instant
 from momentum_lab.app.pull import Grip
 from momentum_lab.physics.push import MAX_DURATION, Push
-
-# Pieces of one hold follow each other at once, s.
-_AT_ONCE = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,14 +30,12 @@ class Held:
 
     @classmethod
     def last_of(cls, pushes: tuple[Push, ...], grip: Grip) -> Held | None:
-        """The last pushes of a run if they have this grip; None if the last one has not."""
-        chain: list[Push] = []
-        for push in pushes[::-1]:
-            joined = not chain or abs(push.start + push.duration - chain[0].start) < _AT_ONCE
-            if not joined or (push.body, push.point) != (grip.body, grip.point):
-                break
-            chain.insert(0, push)
-        return cls(grip, chain[0], tuple(chain[1:])) if chain else None
+        """The last hold of a run with this grip, whatever else has pushed meanwhile; None if there is none."""
+        gripped = [push for push in pushes if (push.body, push.point) == (grip.body, grip.point)]
+        first = len(gripped) - 1
+        while first > 0 and _joined(gripped[first - 1], gripped[first]):
+            first -= 1
+        return cls(grip, gripped[first], tuple(gripped[first + 1 :])) if gripped else None
 
     @property
     def pieces(self) -> tuple[Push, ...]:
@@ -47,13 +44,36 @@ class Held:
 
     @property
     def mean(self) -> Push:
-        """One constant push that lasts as long, with the same impulse."""
-        seconds = math.fsum(piece.duration for piece in self.pieces)
-        force = np.sum([piece.impulse * piece.direction for piece in self.pieces], axis=0) / seconds
-        return self.grip.pulse(force, min(round(seconds, 3), MAX_DURATION))
+        """One constant push with the same impulse, as far as whole newtons go; it lasts as long if a push can."""
+        impulse, seconds = _given(self.pieces)
+        return self.grip.pulse(impulse / seconds, seconds)
 
-    @property
-    def from_now(self) -> tuple[Push, ...]:
-        """The same pieces, the first of them at zero."""
-        start = self.first.start
-        return tuple(msgspec.structs.replace(piece, start=piece.start - start) for piece in self.pieces)
+    def from_now(self, most: int) -> tuple[Push, ...]:
+        """The same pieces, the first of them at zero; of more than so many, neighbours are put together."""
+        groups = [self.pieces[i:j] for i, j in pairwise(_cuts(len(self.pieces), most))]
+        return tuple(self._together(group) for group in groups)
+
+    def _together(self, group: tuple[Push, ...]) -> Push:
+        """What some pieces have given as one, counted from the first piece of all."""
+        start = group[0].start - self.first.start
+        if len(group) == 1:
+            return msgspec.structs.replace(group[0], start=start)
+        return msgspec.structs.replace(self.grip.push(*_given(group)), start=start)
+
+
+def _given(pieces: tuple[Push, ...]) -> tuple[np.ndarray, float]:
+    """Impulse of some pieces (3,), N s, and for how long one push can give it, s."""
+    seconds = round(math.fsum(piece.duration for piece in pieces), 6)
+    impulse = np.sum([piece.impulse * piece.direction for piece in pieces], axis=0)
+    return impulse, min(seconds, MAX_DURATION)
+
+
+def _cuts(count: int, most: int) -> list[int]:
+    """Where to cut so many pieces into at most so many groups of nearly the same number."""
+    groups = min(count, most)
+    return [count * i // groups for i in range(groups + 1)]
+
+
+def _joined(piece: Push, after: Push) -> bool:
+    """Whether one push begins where another ends."""
+    return instant(piece.start + piece.duration) == instant(after.start)

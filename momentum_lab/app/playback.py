@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from momentum_lab.app.beginnings import forgotten, is_handled
+from momentum_lab.app.beginnings import Forgetting, is_handled
 from momentum_lab.app.companion import Companion
 from momentum_lab.app.foresight import Foresight
 from momentum_lab.app.opened import NOTHING_OPENED, OpenedRun
@@ -72,6 +72,7 @@ class Playback:
         self.beside: Companion | None = None
         self.foresights: tuple[Foresight, ...] = ()
         self._waiting: list[SessionEvent] = []
+        self._forgetting = Forgetting()
         self._begin(self._first, robot)
 
     @property
@@ -162,7 +163,7 @@ class Playback:
     def _forgotten(self) -> tuple[float, ...]:
         """When a hand has pushed that would not push again after going on from what is looked at, s."""
         tick = self.session.ticks - self._behind - 1
-        return forgotten(self.session, tick, self._opened.events) if self._behind else ()
+        return self._forgetting.times(self.session, tick, self._opened.events) if self._behind else ()
 
     def taken(self, recording: bool) -> RunTaken:
         """The run as it is now, with the samples of both robots or without; the second is in its scenario."""

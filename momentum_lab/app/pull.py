@@ -11,7 +11,7 @@ import pinocchio as pin
 from momentum_lab.app.overlays import PUSH_LENGTH
 from momentum_lab.errors import InputError
 from momentum_lab.momentum.ground import GRAVITY
-from momentum_lab.physics.push import Push
+from momentum_lab.physics.push import MAX_FORCE, Push
 from momentum_lab.robot.model import RobotModel
 
 # A view from the side shows nothing of what goes away from it: steeper than this a drag is exact, sine of an angle.
@@ -22,6 +22,8 @@ _NOTHING = 0.02
 _AWAY, _BACK = 0.05, 0.025
 # A held force comes in so many steps up to the strongest, and turns by so many degrees at a time: each is an event.
 _STEPS, _TURN = 100, 5.0
+# A push that stands for several points where they do to so many degrees.
+_EXACT = 1e-3
 # Digits of a grabbed point, m.
 _DIGITS = 3
 
@@ -135,9 +137,13 @@ class WayBack:
 
     left: bool = False
 
+    def go(self, off: float) -> None:
+        """Take note that the hand has been so far from there, in heights of the picture."""
+        self.left = self.left or off > _AWAY
+
     def is_back(self, off: float) -> bool:
         """Whether a hand so far from there, in heights of the picture, has been away and is back."""
-        self.left = self.left or off > _AWAY
+        self.go(off)
         return self.left and off < _BACK
 
 
@@ -187,6 +193,11 @@ class Grip:
     def pulse(self, force: np.ndarray, duration: float) -> Push:
         """A push with a force (3,), N, for a duration, s; whole newtons and degrees, as its sliders have them."""
         return self._push(float(round(float(np.linalg.norm(force)))), force, 1.0, duration)
+
+    def push(self, impulse: np.ndarray, duration: float) -> Push:
+        """A constant push that gives an impulse (3,), N s, in a duration, s, as exactly as a push can be."""
+        strength = min(float(np.linalg.norm(impulse)) / duration, MAX_FORCE)
+        return self._push(strength, impulse, _EXACT, duration)
 
     def piece(self, force: np.ndarray, strongest: float) -> Push:
         """A push to be held, in steps that are small against the strongest one, N: each change is an event."""

@@ -5,19 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import msgspec
 import numpy as np
 import viser
 
 from momentum_lab.app.hand_scene import HandScene
 from momentum_lab.app.held import Held
+from momentum_lab.app.inbox import MOST_PUSHES
 from momentum_lab.app.pull import Drag, Grip, Scale, WayBack, grip
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.view_panel import ViewSettings
 from momentum_lab.app.widgets import Post
+from momentum_lab.app.wire import Truth
 from momentum_lab.events import ApplyPushes, HoldPush, LetGo
-from momentum_lab.physics.push import Push
+from momentum_lab.physics.push import MAX_DURATION, Push
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,13 +42,31 @@ class Reach:
 
 @dataclass(slots=True)
 class Pull:
-    """A pull that is going on."""
+    """A pull that is going on.
+
+    Attributes:
+        reach: the robot.
+        grip: what of it.
+        holds: whether it pushes while it goes on.
+        run: in which run it began.
+        held: the piece that was posted last.
+        way: of the hand.
+    """
 
     reach: Reach
     grip: Grip
     holds: bool
+    run: int
     held: Push | None = None
     way: WayBack = field(default_factory=WayBack)
+
+    def has_lasted(self, latest: Push | None) -> bool:
+        """Whether what is held is the latest push of a run, and has lasted as long as a push can."""
+        if latest is None or self.held is None or latest.duration < MAX_DURATION:
+            return False
+        return (
+            msgspec.structs.replace(latest, start=self.held.start, duration=self.held.duration) == self.held
+        )
 
 
 class Pulling:
@@ -73,7 +94,19 @@ class Pulling:
         self._pull: Pull | None = None
         # How long what was held has lasted, and how long pushes were before the panel showed that, s.
         self._durations = (0.0, 0.0)
-        self.playing = True
+        self.playing, self.run = True, -1
+
+    def follow(self, truth: Truth) -> str | None:
+        """Take note of what is the case: why a pull is over without the hand, for people; None while it is not."""
+        self.playing, self.run = truth.playing, truth.run
+        pull = self._pull
+        if pull is None:
+            return None
+        if pull.run != truth.run or not pull.reach.body.there:
+            return ""  # it was another robot, or one that stands again: everybody sees that
+        if pull.has_lasted(truth.push):
+            return f"A push is held for {MAX_DURATION:g} s at most: let go, and grab the robot again."
+        return None
 
     def begin(self, reach: Reach, joint: int, drag: Drag) -> None:
         """Take hold of what moves with a joint.
@@ -82,16 +115,19 @@ class Pulling:
             InputError: a browser has chosen what no widget offers.
         """
         self.drop()
+        if not reach.body.there:
+            return
         held = self._panel.hand.by_hand == "hold" and self.playing
         taken = grip(reach.robot.model, reach.body.drawn, joint, drag.start - reach.offset)
-        self._pull = Pull(reach, taken, held)
+        self._pull = Pull(reach, taken, held, self.run)
         self.move(drag)
 
     def move(self, drag: Drag) -> None:
         """Draw the pull as it is now; a hold gives its force."""
-        if self._pull is None:
+        pull = self._present()
+        if pull is None:
             return  # nothing was grabbed, or it was refused
-        pull, size = self._pull, self._pull.reach.size
+        size = pull.reach.size
         force, scale = self._force(pull, drag)
         if pull.held is not None and "push" in self._settings.shown:
             self._scene.clear()  # the push itself is in the picture
@@ -100,11 +136,17 @@ class Pulling:
         words = _words(pull, force, scale, self.playing)
         self._scene.draw(drag.start, scale.length(force), words, home, size)
 
+    def pass_by(self, drag: Drag) -> None:
+        """Take note of where a hand has been that is somewhere else by now: nothing is drawn or held of it."""
+        if self._pull is not None:
+            self._pull.way.go(drag.off)
+
     def let_go(self, drag: Drag) -> None:
         """What a hand does that opens: the push, or the end of the one that was held."""
-        if self._pull is None:
+        pull = self._present()
+        if pull is None:
             return
-        pull, (force, _) = self._pull, self._force(self._pull, drag)
+        force, _ = self._force(pull, drag)
         self._pull = None
         self._scene.clear()
         if pull.held is not None:
@@ -121,6 +163,12 @@ class Pulling:
         self._scene.clear()
         if pull is not None and pull.held is not None:
             self._post(LetGo())
+
+    def _present(self) -> Pull | None:
+        """The pull that is going on; one on a robot that has left is given up."""
+        if self._pull is not None and not self._pull.reach.body.there:
+            self.drop()
+        return self._pull
 
     def _force(self, pull: Pull, drag: Drag) -> tuple[np.ndarray, Scale]:
         """The force of now (3,), N, which a hold gives if it is another one; and how strong pulls are."""
@@ -146,12 +194,20 @@ class Pulling:
             before = self._duration()
             self._panel.show(held.mean)
             self._durations = (self._panel.form.duration, before)
-            self._panel.can_repeat(ApplyPushes(held.from_now))
+            pieces = held.from_now(MOST_PUSHES)
+            self._panel.can_repeat(ApplyPushes(pieces), _coarser(len(held.pieces), len(pieces)))
 
     def _duration(self) -> float:
         """How long a push is to last, s: what the panel says, unless that is how long something was held."""
         shown, before = self._durations
         return before if self._panel.form.duration == shown else self._panel.form.duration
+
+
+def _coarser(held: int, repeated: int) -> str:
+    """What to tell whoever repeats a hold of so many pieces in so many; nothing if they are the same."""
+    if held == repeated:
+        return ""
+    return f"Your hand pulled in {held} pieces; they are repeated in {repeated}, with the same impulse."
 
 
 def _words(pull: Pull, force: np.ndarray, scale: Scale, playing: bool) -> str:

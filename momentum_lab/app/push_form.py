@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast, get_args
 
 import viser
 
 from momentum_lab.app.robots import LoadedRobot
+from momentum_lab.app.widgets import one_of
 from momentum_lab.errors import InputError
-from momentum_lab.physics.push import Push
+from momentum_lab.physics.push import Push, Shape
 
 # The chapter's push: what it does to the velocity of the CoM, m/s, and for how long, ms.
 _VELOCITY_CHANGE, _DURATION = 0.24, 100.0
@@ -18,6 +19,7 @@ _VELOCITY_CHANGE, _DURATION = 0.24, 100.0
 _STRONGEST = 0.7
 _DIRECTIONS = {"forward": 0.0, "left": 90.0, "back": 180.0, "right": -90.0}
 _TRUNK = "trunk"
+_SHAPES: tuple[str, ...] = get_args(Shape)
 
 
 class PushForm:
@@ -66,9 +68,7 @@ class PushForm:
             visible=False,
             hint="Push at the point that your hand has pulled, which moves with the body.",
         )
-        self._shape: Any = gui.add_dropdown(
-            "shape", ("rectangle", "half-sine"), hint="How the force runs over time."
-        )
+        self._shape: Any = gui.add_dropdown("shape", _SHAPES, hint="How the force runs over time.")
         self._wire(redraw)
 
     @property
@@ -97,7 +97,7 @@ class PushForm:
         """The push that the widgets describe.
 
         Raises:
-            InputError: a value is not a number.
+            InputError: a value is not a number, or a shape is none.
         """
         grabbed = self._grabbed if self._at_point.value else None
         height = _number(self._height, "height")
@@ -109,7 +109,7 @@ class PushForm:
             elevation_deg=_number(self._elevation, "upwards"),
             height=None if through_com else height,
             body=grabbed.body if grabbed else None if self._body.value == _TRUNK else self._body.value,
-            shape=self._shape.value,
+            shape=cast(Shape, one_of(self._shape, "shape", _SHAPES)),
             point=grabbed.point if grabbed else None,
         )
 

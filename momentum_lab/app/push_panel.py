@@ -49,6 +49,7 @@ class PushPanel:
     ) -> None:
         self._post, self._tell = post, tell
         self._last: ApplyPush | ApplyPushes | None = None
+        self._coarser = ""
         self._robot: LoadedRobot | None = None
         self._still: Sample | None = None
         self._size_text = ""
@@ -112,6 +113,8 @@ class PushPanel:
             self.apply()
         else:
             self._post(self._last)
+            if self._coarser:
+                self._tell(self._coarser)
 
     def ask(self) -> None:
         """Ask where the push would take the robot; nobody is pushed."""
@@ -125,9 +128,9 @@ class PushPanel:
         self._post(ApplyPush(push))
         self.can_repeat(ApplyPush(push))
 
-    def can_repeat(self, last: ApplyPush | ApplyPushes) -> None:
-        """Take note of what was given last."""
-        self._last = last
+    def can_repeat(self, last: ApplyPush | ApplyPushes, coarser: str = "") -> None:
+        """Take note of what was given last, and of what to tell whoever repeats it if it was finer."""
+        self._last, self._coarser = last, coarser
 
     def _describe(self, push: Push) -> str:
         """Impulse, and what part of it the CoP alone could catch."""

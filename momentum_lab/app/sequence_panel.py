@@ -83,6 +83,10 @@ class SequencePanel:
         first = min(push.start for push in pushes)
         moved = [msgspec.structs.replace(push, start=round(push.start - first, 6)) for push in pushes]
         self._show(tuple(moved)[:MOST_PUSHES])
+        if len(moved) > MOST_PUSHES:
+            self._tell(
+                f"The first {MOST_PUSHES} of the {len(moved)} pushes of this run: a sequence has no more."
+            )
 
     def _play(self) -> None:
         if not self.sequence:

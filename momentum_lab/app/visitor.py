@@ -41,7 +41,7 @@ from momentum_lab.app.view_panel import ViewSettings
 from momentum_lab.app.wire import Frame, RunTaken, Truth, rows_of
 from momentum_lab.app.world import add_floor, add_world
 from momentum_lab.errors import InputError
-from momentum_lab.events import Event
+from momentum_lab.events import Branch, Event
 from momentum_lab.recording import Sample
 from momentum_lab.run_file import Run
 
@@ -131,6 +131,8 @@ class Visitor:
     def post(self, event: Event) -> None:
         """Hand an event to the session; tell the person if it is not allowed."""
         self._demo.demo.touch()
+        if isinstance(event, Branch) and self._panels is not None:
+            self._panels.hand.give_up()  # what it holds is forgotten, or let go there
         try:
             self._link.post(event)
         except InputError as error:
@@ -317,7 +319,7 @@ class Visitor:
         panels.ground.follow(truth)
         panels.mismatch.follow(truth)
         panels.control.see(sample)
-        panels.hand.follow(truth.playing)
+        panels.hand.follow(truth)
         panels.control.bounds.see(sample, loaded.model, truth)
         if truth.fall is None:
             panels.push.see(sample)

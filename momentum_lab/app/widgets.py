@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
+from momentum_lab.errors import InputError
 from momentum_lab.events import Event
 
 Post = Callable[[Event], None]
@@ -55,6 +56,17 @@ class Bound(Generic[Value]):
         self._touched = self._clock()
         self._known = self.handle.value
         self._post(self._event(self._known))
+
+
+def one_of(widget: Any, name: str, allowed: tuple[str, ...]) -> str:
+    """What has been chosen, if the widget offers it: a browser may send anything.
+
+    Raises:
+        InputError: it does not.
+    """
+    if widget.value not in allowed:
+        raise InputError(name, widget.value, f"one of {', '.join(allowed)}")
+    return str(widget.value)
 
 
 def _same(one: object, other: object) -> bool:

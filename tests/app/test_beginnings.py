@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from momentum_lab.app import beginnings as beginnings_of_a_run
 from momentum_lab.app.beginnings import beginnings, latest_before
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.wire import OpenRun
@@ -19,6 +20,66 @@ def test_pushes_that_have_begun_in_their_order():
     assert beginnings(pushes, 2.0) == (0.5, 0.55, 2.0)
     assert latest_before((0.5, 2.0), 1.9) == 0.5
     assert latest_before((0.5, 2.0), 0.4) is None
+
+
+class Counted(float):
+    """A time that counts how often it is compared or computed with."""
+
+    count = 0
+
+
+def counting(name: str):
+    def act(one: Counted, other: float):
+        Counted.count += 1
+        return getattr(float, name)(one, other)
+
+    return act
+
+
+for operation in ("__add__", "__sub__", "__truediv__", "__lt__", "__le__"):
+    setattr(Counted, operation, counting(operation))
+
+
+def work(pieces: int) -> int:
+    """How much is done with the starts of so many pieces of one pull."""
+    chain = [Push(force=1.0, start=Counted(0.001 * i), duration=0.001) for i in range(pieces)]
+    Counted.count = 0
+    assert beginnings(chain, 9.0) == (0.0,)
+    return Counted.count
+
+
+def test_ten_times_the_pieces_are_ten_times_the_work_in_the_process_that_keeps_time():
+    assert work(1000) <= 12 * work(100)
+
+
+def test_what_a_way_back_forgets_is_looked_up_once_while_nothing_changes(monkeypatch):
+    asked = []
+    known = beginnings_of_a_run.forgotten
+    monkeypatch.setattr(beginnings_of_a_run, "forgotten", lambda *given: asked.append(given) or known(*given))
+    playback = Playback(Scenario("s", robot="g1"))
+    playback.take(ApplyPush(PUSH))
+    playback.tick(100)
+    playback.take(LookBack(0.05))
+    assert [playback.truth(1.0).forgotten for _ in range(3)] == [()] * 3
+    playback.take(LookBack(1.0))
+    assert [playback.truth(1.0).forgotten for _ in range(3)] == [pytest.approx((0.001,))] * 3
+    assert len(asked) == 2
+
+
+def test_what_a_way_back_forgets_is_that_of_the_present_run():
+    """Two runs that go on from the same instant, each with one push, at other times."""
+    playback = Playback(Scenario("s", robot="g1"))
+    playback.tick(50)
+    told = []
+    for wait in (10, 30):
+        playback.tick(wait)
+        playback.take(ApplyPush(PUSH))
+        playback.tick(40)
+        playback.take(LookBack(playback.session.time - 0.041))
+        told.append(playback.truth(1.0).forgotten)
+        playback.take(Branch())
+    assert len(told[0]) == len(told[1]) == 1
+    assert told[0] != told[1]
 
 
 def test_a_hand_that_moves_pulls_once():

@@ -12,13 +12,17 @@ import numpy as np
 import pytest
 
 from momentum_lab.app.hand import Hand, Note
+from momentum_lab.app.inbox import MOST_PUSHES, checked_event
 from momentum_lab.app.pull import Scale
 from momentum_lab.app.pulling import Pulling, Reach
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.view_panel import ViewSettings
-from momentum_lab.events import ApplyPush, ApplyPushes, HoldPush, LetGo
+from momentum_lab.app.visitor import Visitor
+from momentum_lab.events import ApplyPush, ApplyPushes, Branch, HoldPush, LetGo
+from momentum_lab.physics.held_push import Pushed
+from momentum_lab.physics.push import MAX_DURATION, Push
 from momentum_lab.recording import Layout
 from momentum_lab.robot.geometry import LinkMesh
 from momentum_lab.robot.posture import standing_posture
@@ -38,7 +42,7 @@ class Desk:
         self.client = FakeClient()
         trunk = robot.model.frames[robot.trunk].parentJoint
         loaded = LoadedRobot(robot, (LinkMesh(trunk, *TRIANGLE, (0.5, 0.5, 0.5)),), Layout.of(robot))
-        self.posted, self.told = [], []
+        self.posted, self.told, self.busy = [], [], False
         self.panel = PushPanel(self.client.gui, self.posted.append, self.told.append, lambda: None)
         self.panel.set_robot(loaded)
         self.pushes: tuple = ()
@@ -57,7 +61,12 @@ class Desk:
         on_screen = ((0.5, 0.5), (0.5 + 0.25 * (x + y), 0.5 - 0.5 * z), (1600, 800))
         places = (told["start"], told["end"], told["eye"])
         self.hand.note(Note(self.reach, self.trunk, phase, places, on_screen))
-        self.hand.act()
+        if not self.busy:
+            self.hand.act()
+
+    def see(self, playing: bool = True, run: int = 0, push: Push | None = None) -> None:
+        """A frame of the session has come."""
+        self.hand.follow(SimpleNamespace(playing=playing, run=run, push=push))
 
     def set(self, label: str, value: object) -> None:
         self.client.gui.widgets[label].set_by_person(value)
@@ -129,6 +138,17 @@ def test_back_where_it_began_there_is_no_push_and_both_ends_of_the_arrow_say_so(
     assert desk.posted[0].push.force == round(0.04 * desk.scale.newtons_per_metre)
 
 
+def test_the_way_out_and_back_counts_however_fast_it_was(desk):
+    desk.drag("start", 0.0, 0.0)
+    desk.busy = True  # all of this comes while the server is at something else
+    for x in (0.1, 0.3, 0.03):
+        desk.drag("update", x, 0.0)
+    desk.busy = False
+    desk.drag("end", 0.03, 0.0)
+    assert desk.posted == []
+    assert desk.told == []
+
+
 @pytest.mark.parametrize("way", ["pulse", "hold"])
 def test_a_hand_can_give_up(desk, way):
     desk.set("by hand", way)
@@ -139,6 +159,63 @@ def test_a_hand_can_give_up(desk, way):
     desk.drag("update", 0.4, 0.0)
     desk.drag("end", 0.4, 0.0)
     assert [type(event) for event in desk.posted] == [HoldPush, HoldPush, LetGo] * (way == "hold")
+
+
+@pytest.mark.parametrize("way", ["pulse", "hold"])
+def test_a_robot_that_stands_up_again_is_not_pulled_by_the_hand_that_pulled_before(desk, way):
+    desk.set("by hand", way)
+    desk.see(run=3)
+    desk.drag("start", 0.2, 0.0)
+    desk.see(run=3)
+    desk.drag("update", 0.21, 0.0)
+    desk.see(run=4)  # Reset, the same pushes again, another scenario
+    posted = len(desk.posted)
+    assert way == "pulse" or isinstance(desk.posted[-1], LetGo)
+    desk.drag("update", 0.3, 0.0)
+    desk.drag("end", 0.3, 0.0)
+    assert len(desk.posted) == posted
+    assert all(node.removed for name, node in desk.client.scene.nodes.items() if name.startswith("/hand"))
+    desk.drag("start", 0.2, 0.0)
+    desk.see(run=4)
+    desk.drag("end", 0.2, 0.0)
+    assert len(desk.posted) > posted
+
+
+def test_what_was_held_as_long_as_a_push_can_be_does_not_begin_again_with_the_next_move(desk):
+    desk.set("by hand", "hold")
+    desk.drag("start", 0.2, 0.0)
+    (held,) = [event.push for event in desk.posted]
+    for seconds, kinds in ((MAX_DURATION - 0.001, [HoldPush]), (MAX_DURATION, [HoldPush, LetGo])):
+        (latest,) = Pushed().held_from(2.0, held).until(2.0 + seconds, 1e-3)
+        desk.see(run=-1, push=latest)
+        assert [type(event) for event in desk.posted] == kinds
+    assert "10 s at most" in desk.told[0]
+    desk.drag("update", 0.3, 0.0)
+    desk.drag("end", 0.3, 0.0)
+    assert [type(event) for event in desk.posted] == [HoldPush, LetGo]
+    assert len(desk.told) == 1
+
+
+def test_a_robot_that_has_left_gets_no_push_of_its_link(desk):
+    desk.drag("start", 0.2, 0.0)
+    desk.reach.body.remove()
+    desk.drag("end", 0.2, 0.0)
+    desk.drag("start", 0.2, 0.0)
+    desk.drag("end", 0.2, 0.0)
+    assert (desk.posted, desk.told) == ([], [])
+
+
+def test_whoever_goes_on_from_an_earlier_instant_has_let_go(desk):
+    """The session lets go there, too: a hand that still held would begin again with its next move."""
+    desk.set("by hand", "hold")
+    tab = Visitor.__new__(Visitor)
+    tab._demo = SimpleNamespace(demo=SimpleNamespace(touch=lambda: None))
+    tab._panels, tab._link = SimpleNamespace(hand=desk.hand), SimpleNamespace(post=desk.posted.append)
+    desk.drag("start", 0.2, 0.0)
+    tab.post(Branch())
+    desk.drag("update", 0.3, 0.0)
+    desk.drag("end", 0.3, 0.0)
+    assert [type(event) for event in desk.posted] == [HoldPush, LetGo, Branch]
 
 
 def test_up_and_sideways_pulls_up(desk):
@@ -204,9 +281,30 @@ def test_what_was_held_can_be_repeated_piece_by_piece(desk):
     assert desk.posted[-1].push.duration == 0.1  # and not the three seconds of what was held
 
 
+def test_a_hold_of_very_many_pieces_can_be_repeated_and_says_what_is_coarser(desk):
+    desk.set("by hand", "hold")
+    for i in range(137):
+        desk.drag("update" if i else "start", 0.1 + 0.002 * (i % 2) * i, 0.0)
+    pieces = [event.push for event in desk.posted]
+    desk.pushes = tuple(
+        msgspec.structs.replace(piece, start=3.0 + 0.02 * i, duration=0.02) for i, piece in enumerate(pieces)
+    )
+    assert len(pieces) > MOST_PUSHES
+    desk.drag("end", 0.1, 0.0)
+    assert desk.told == []
+    desk.panel.apply_again()
+    checked_event(desk.posted[-1], (), ())
+    assert desk.told == [
+        f"Your hand pulled in {len(pieces)} pieces; they are repeated in 50, with the same impulse."
+    ]
+    desk.panel.apply()
+    desk.panel.apply_again()
+    assert len(desk.told) == 1
+
+
 def test_in_a_pause_a_hold_would_last_no_time_and_is_a_pulse(desk):
     desk.set("by hand", "hold")
-    desk.hand.follow(playing=False)
+    desk.see(playing=False)
     desk.drag("start", 0.2, 0.0)
     assert desk.label.text.endswith("waits for play")
     desk.drag("end", 0.2, 0.0)
@@ -270,13 +368,35 @@ def test_without_shift_a_drag_pulls_while_that_is_switched_on(desk):
     assert mesh.dragged == ("left", "shift")
     for modifier in (None, "shift"):
         desk.hand.toggle()
-        desk.hand.follow(playing=True)
+        desk.see(playing=True)
         assert mesh.dragged == ("left", modifier)
         assert len(mesh.callbacks) == 1
     desk.reach.body.remove()
     desk.set("drag pushes the robot", True)
-    desk.hand.follow(playing=True)
+    desk.see(playing=True)
     assert mesh.dragged == ("left", "shift")  # viser refuses new callbacks of what has gone
+
+
+class Flickering:
+    """A panel whose switch is turned over whenever somebody has looked at it."""
+
+    def __init__(self) -> None:
+        self.looked = 0
+
+    @property
+    def modifier(self) -> str | None:
+        self.looked += 1
+        return (None, "shift")[self.looked % 2]
+
+
+def test_a_switch_that_is_turned_meanwhile_is_followed_in_the_next_frame(desk):
+    desk.hand._panel = Flickering()
+    (mesh,) = [node for node in desk.client.scene.nodes.values() if node.method == "add_mesh_simple"]
+    desk.hand.reach(desk.reach)
+    assert mesh.dragged == ("left", "shift")
+    for modifier in (None, "shift"):
+        desk.see(playing=True)
+        assert mesh.dragged == ("left", modifier)
 
 
 def test_events_stay_in_order(desk):

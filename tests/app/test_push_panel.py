@@ -65,6 +65,17 @@ def test_everything_can_be_chosen(desk):
     )
 
 
+@pytest.mark.parametrize("shape", ["triangle", "", 3, None, ["rectangle"]])
+def test_a_shape_that_no_widget_offers_is_told_and_no_push(desk, shape):
+    desk.gui.widgets["shape"].value = shape
+    desk.panel.refresh()
+    assert "shape: got" in desk.size
+    for act in (desk.panel.apply, desk.panel.ask):
+        act()
+        assert "allowed: one of rectangle, half-sine" in desk.told.pop()
+    assert desk.posted == []
+
+
 def test_bodies_are_those_of_the_robot(desk, talos):
     options = desk.gui.widgets["body"].options
     assert set(options) == set(talos.spec.push_bodies)

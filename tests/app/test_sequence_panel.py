@@ -62,6 +62,14 @@ def test_the_pushes_of_a_run_are_taken_in_their_own_time(desk):
     assert [(push.force, push.start) for push in desk.panel.sequence] == [(10.0, 0.0), (20.0, 0.75)]
 
 
+def test_a_run_of_more_pushes_than_a_sequence_has_says_which_are_taken(desk):
+    desk.of_run = tuple(Push(force=10.0, start=0.1 * i, duration=0.1) for i in range(137))
+    desk.do("Take the pushes of this run")
+    assert len(desk.panel.sequence) == 50
+    (told,) = desk.told
+    assert "first 50 of the 137 pushes" in told
+
+
 def test_an_empty_sequence_says_what_to_do(desk):
     desk.do("Play the sequence")
     desk.do("Take the pushes of this run")

@@ -23,12 +23,16 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
 TRUNK, PULLED, HELD = (640, 230), (730, 230), (690, 230)
 ARROW = {"x": 650, "y": 220, "width": 60, "height": 20}
 FORCE = {"x": 735, "y": 215, "width": 90, "height": 20}
+# Whether the mouse is over what can be dragged.
+GRABBABLE = "[...document.querySelectorAll('canvas')].some(canvas => canvas.style.cursor === 'pointer')"
+# A hand that has held for so long has held, s.
+LONG = 0.5
 
 
 def pull(lab: LabPage, end: tuple[int, int]) -> None:
     """Press the mouse on the trunk and take it to another place in steps; it stays down."""
     lab.page.mouse.move(*TRUNK)
-    lab.page.wait_for_timeout(500)
+    lab.until(lambda: lab.page.evaluate(GRABBABLE), "the trunk is nothing that can be grabbed")
     lab.page.mouse.down()
     for part in np.linspace(0.2, 1.0, 5):
         x, y = np.array(TRUNK) + part * (np.array(end) - TRUNK)
@@ -74,12 +78,37 @@ def changed(before: np.ndarray, after: np.ndarray, clip: dict[str, int]) -> floa
     return float((np.abs(after - before)[rows, columns].max(axis=2) > 40).mean())
 
 
-def test_a_hand_in_the_picture(served: Served, open_page: Opener, tmp_path: Path) -> None:
-    lab = open_page(served.url, height=TALL, fingers=True).until_furnished()
-    lab.expect_status("standing")
-    lab.expect_ticks(plot=0)
-    still = lab.picture(CANVAS)
+def last_push(lab: LabPage) -> tuple[float, float]:
+    """Force and duration of the push that is told, N and s."""
+    words = lab.page.get_by_text("Last push: ").inner_text()
+    force, milliseconds = re.findall(r"([0-9]+) N for ([0-9]+) ms", words)[0]
+    return float(force), 1e-3 * float(milliseconds)
 
+
+def choose_by_hand(lab: LabPage, way: str) -> None:
+    lab.page.get_by_role("combobox", name="by hand").evaluate("b => b.click()")
+    lab.page.get_by_role("option", name=way).evaluate("o => o.click()")
+
+
+def switch_shift(lab: LabPage) -> Locator:
+    """Press the key that lets a drag push without Shift, or no longer; the switch that shows it."""
+    lab.press("t")
+    return lab.page.get_by_role("checkbox", name="drag pushes the robot")
+
+
+def until_bound(lab: LabPage) -> None:
+    """Wait until the meshes have heard of the switch: they do with each frame, before its time is told.
+
+    The frame after the switch may have been half done before it.
+    """
+    for _ in range(2):
+        before = lab.time
+        lab.until(lambda before=before: lab.time != before, "the time that is told stands still")
+
+
+def pulse(lab: LabPage) -> float:
+    """Pull with Shift and let go: the arrow is drawn before, the push is given and told after; its force, N."""
+    still = lab.picture(CANVAS)
     lab.page.keyboard.down("Shift")
     pull(lab, PULLED)
     lab.picture_with(lambda pulling: changed(still, pulling, ARROW) > 0.3, "no arrow where it is pulled")
@@ -90,34 +119,52 @@ def test_a_hand_in_the_picture(served: Served, open_page: Opener, tmp_path: Path
     lab.page.keyboard.up("Shift")
     lab.expect_text("Last push: [0-9]+ N for 100 ms .* on the trunk")
     lab.expect_com_travel(0.5)
-    told = lab.page.get_by_text("Last push: ").inner_text()
-    force = float(re.findall(r"([0-9]+) N", told)[0])
+    force, _ = last_push(lab)
     expect(slider(lab, "force (N)")).to_have_attribute("aria-valuenow", f"{force:.0f}", timeout=PATIENCE)
     lab.expect_status("standing")
+    return force
 
-    lab.page.get_by_role("combobox", name="by hand").evaluate("b => b.click()")
-    lab.page.get_by_role("option", name="hold").evaluate("o => o.click()")
-    switch = lab.page.get_by_role("checkbox", name="drag pushes the robot")
-    lab.press("t")
-    expect(switch).to_be_checked(timeout=PATIENCE)
-    lab.page.wait_for_timeout(1000)  # the meshes hear of it after the switch
-    finger = Finger(lab)
+
+def hold(lab: LabPage, finger: Finger) -> None:
+    """Pull with a finger for a while: the push lasts as long and is shown after, and time stands then."""
+    choose_by_hand(lab, "hold")
+    expect(switch_shift(lab)).to_be_checked(timeout=PATIENCE)
+    until_bound(lab)
     finger.pull(HELD)
-    lab.page.wait_for_timeout(1000)
+    lab.until(lambda: last_push(lab)[1] > LONG, "nothing is held")
     lab.page.screenshot(path=OUTPUT / "drag_hold.png", timeout=PATIENCE)
     finger.lift()
     expect(slider(lab, "duration (ms)")).not_to_have_attribute("aria-valuenow", "100", timeout=PATIENCE)
     lab.pause()
 
-    lab.page.get_by_role("combobox", name="by hand").evaluate("b => b.click()")
-    lab.page.get_by_role("option", name="pulse").evaluate("o => o.click()")
-    finger.pull(PULLED)  # and back: given up
+
+def give_up(lab: LabPage, finger: Finger) -> None:
+    """Pull with a finger and take it back where it began."""
+    choose_by_hand(lab, "pulse")
+    still = lab.picture(CANVAS)
+    finger.pull(PULLED)
+    lab.picture_with(lambda pulling: changed(still, pulling, ARROW) > 0.3, "the finger pulls nothing")
     finger.pull((TRUNK[0] + 3, TRUNK[1]))
     finger.lift()
-    lab.press("t")
-    expect(switch).not_to_be_checked(timeout=PATIENCE)
-    pull(lab, PULLED)  # without Shift: the picture turns, and nobody is pushed
+
+
+def drag_without_shift(lab: LabPage) -> None:
+    """Drag as somebody does who wants to turn the picture."""
+    expect(switch_shift(lab)).not_to_be_checked(timeout=PATIENCE)
+    pull(lab, PULLED)
     lab.page.mouse.up()
+
+
+def test_a_hand_in_the_picture(served: Served, open_page: Opener, tmp_path: Path) -> None:
+    """A pulse and a hold push; a pull that is given up and a drag without Shift do not; the run is repeated."""
+    lab = open_page(served.url, height=TALL, fingers=True).until_furnished()
+    lab.expect_status("standing")
+    lab.expect_ticks(plot=0)
+    force = pulse(lab)
+    finger = Finger(lab)
+    hold(lab, finger)
+    give_up(lab, finger)
+    drag_without_shift(lab)
     lab.open_tab("5", "Share")
     run = from_code(code_of(lab))
     session, _ = replayed(run)
