@@ -28,16 +28,17 @@ def told(frame: Frame, sample: Sample, loaded: LoadedRobot) -> Status:
         return first
     beside = Sample.of(loaded.layout, rows_of(frame.other.row, loaded.layout.width)[0])
     second = _one(frame.other.truth, beside, loaded)
-    return both((first, second), (frame.truth, frame.other.truth))
+    truths = (frame.truth, frame.other.truth)
+    return both((first, second), truths, frame.other.names or names_of(*truths))
 
 
-def both(statuses: tuple[Status, Status], truths: tuple[Truth, Truth]) -> Status:
+def both(statuses: tuple[Status, Status], truths: tuple[Truth, Truth], names: tuple[str, str]) -> Status:
     """Two robots in one line, by the names over their heads; one with the words of both if they do the same."""
     short = [_short(status, truth) for status, truth in zip(statuses, truths, strict=True)]
     worst = max(statuses, key=lambda status: _GRAVITY.index(status.kind))
     if short[0] == short[1]:
         return Status(worst.kind, f"both: {short[0]}", worst.color)
-    parts = [f"{name}: {words}" for name, words in zip(names_of(*truths), short, strict=True)]
+    parts = [f"{name}: {words}" for name, words in zip(names, short, strict=True)]
     return Status(worst.kind, "; ".join(parts), worst.color)
 
 

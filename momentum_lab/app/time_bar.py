@@ -31,7 +31,7 @@ _GRID = "div:has(>div>.lab-bar)"
 _UNSEEN = "position:absolute;width:1px!important;height:1px;overflow:hidden;clip-path:inset(50%)"
 _STYLE = (
     "<style>div:has(>.lab-cell){display:none}"
-    f"{_GRID}{{display:grid;align-items:center;grid-template-columns:1fr 1fr;padding:0 .2em;"
+    f"{_GRID}{{display:grid;align-items:center;grid-template-columns:6fr 5fr;padding:0 .2em;"
     "grid-template-areas:'status time' 'status words' 'buttons speed' 'strip strip' 'look look'}"
     f"{_GRID}>*{{grid-area:words;min-width:0;padding-bottom:.25em}}"
     + "".join(f"{_GRID}>div:has(>.lab-{name})+*{{grid-area:{name}}}" for name in _CELLS)
@@ -39,6 +39,8 @@ _STYLE = (
     + "".join(
         f"{_GRID}>div:has(>.lab-{name})+*>div>div:has(label){{{_UNSEEN}}}" for name in ("buttons", "speed")
     )
+    # What is said of two robots is long, and a bar that grows would cover their feet.
+    + f"{_GRID} [data-status] span{{font-size:1.05em!important;line-height:1.25}}"
     # Nobody needs a tab to choose the only one.
     + "[data-floating-window]:has(.lab-bar) [data-dock-strip]{display:none!important}</style>"
 )

@@ -24,13 +24,17 @@ class Desk:
         session = self.playback.session
         self.loaded = LoadedRobot(session.robot, (), session.recording.layout)
 
-    def told(self, first: dict | None = None, second: dict | None = None) -> Status:
+    def told(
+        self, first: dict | None = None, second: dict | None = None, names: tuple[str, str] | None = None
+    ) -> Status:
         playback = self.playback
         truth = msgspec.structs.replace(playback.truth(1.0), **(first or {}))
         other_truth, shown = playback.beside_truth(truth), playback.beside_shown
         row, other = playback.shown.row.tobytes(), None
         if other_truth is not None and shown is not None:
-            other = Other(msgspec.structs.replace(other_truth, **(second or {})), shown.row.tobytes(), b"")
+            other = Other(
+                msgspec.structs.replace(other_truth, **(second or {})), shown.row.tobytes(), b"", names
+            )
         return told(Frame(truth, row, b"", other=other), playback.shown, self.loaded)
 
 
@@ -57,6 +61,11 @@ def test_the_one_that_fell_is_named_as_over_its_head(desk):
     assert desk.told(first={**FELL, "behind": 0.0}, second={"fall": None}).words == (
         "priority 0: fell at 1.32 s; priority 1: standing"
     )
+
+
+def test_robots_of_a_lesson_have_the_names_that_it_gives_them(desk):
+    words = desk.told(second=FELL, names=("bend", "upright")).words
+    assert words == "bend: standing; upright: fell at 1.32 s"
 
 
 def test_falls_at_different_times_are_told_apart(desk):
