@@ -12,10 +12,10 @@ import viser
 
 from momentum_lab.app.marks import Theme
 from momentum_lab.app.view_panel import ViewSettings
+from momentum_lab.palette import BLUE
 
 Choice = Literal["light", "dark", "as the browser"]
 CHOICES: tuple[Choice, ...] = ("light", "dark", "as the browser")
-_BRAND = (0, 114, 178)
 _KEY = "colours"
 # A browser that does not answer remembers nothing, s.
 _PATIENCE = 5.0
@@ -40,9 +40,7 @@ TELL_THEME = f'<img alt="" src="data:," style="display:none" onerror="{escape(_T
 
 def dress(gui: viser.GuiApi, theme: Theme) -> None:
     """Give a page its colours, and take away what the lab does not need."""
-    gui.configure_theme(
-        show_share_button=False, show_logo=False, brand_color=_BRAND, dark_mode=theme == "dark"
-    )
+    gui.configure_theme(show_share_button=False, show_logo=False, brand_color=BLUE, dark_mode=theme == "dark")
 
 
 class Appearance:

@@ -8,6 +8,7 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.wire import Truth
+from momentum_lab.palette import BLUE
 
 WAY_BACK = "Take back, in the Share tab, returns to it"
 
@@ -34,7 +35,7 @@ class KeptBefore:
         self._line = gui.add_html("", visible=False)
         self._button = gui.add_button(
             "Take back",
-            color=(0, 114, 178),
+            color=BLUE,
             icon=viser.Icon.ARROW_BACK_UP,
             visible=False,
             hint="Puts the run that was here before on stage again, as it was.",

@@ -27,6 +27,7 @@ from momentum_lab.events import (
 )
 from momentum_lab.lesson.parts import PUSH_CONTROLS
 from momentum_lab.momentum.directions import directions, text_of
+from momentum_lab.palette import VERMILLION
 from momentum_lab.physics.push import Push
 from momentum_lab.robot.catalog import robot_names
 from momentum_lab.scenario import Scenario
@@ -70,7 +71,7 @@ class TryOut:
                 self._add(gui, name, truth)
         self.pushes = any(name in PUSH_CONTROLS for name in names)
         if self.pushes:
-            button = gui.add_button("Push it  (P)", color=(213, 94, 0), icon=viser.Icon.HAND_MOVE)
+            button = gui.add_button("Push it  (P)", color=VERMILLION, icon=viser.Icon.HAND_MOVE)
             button.on_click(lambda _: self.push())
         again = gui.add_button("Start again  (R)", color="gray", icon=viser.Icon.PLAYER_TRACK_PREV)
         again.on_click(lambda _: post(Reset()))

@@ -11,10 +11,10 @@ import viser
 from momentum_lab.app import learn_html
 from momentum_lab.app.learn_style import WAY
 from momentum_lab.app.walk import Walk
+from momentum_lab.palette import BLUE
 
 _BACK, _LEAVE = "Back  (U)", "Leave the lesson"
 _NEXT, _SKIP, _FINISH = "Next  (I)", "Skip  (I)", "Finish  (I)"
-_BLUE = (0, 114, 178)
 
 
 class LearnFrame:
@@ -41,7 +41,7 @@ class LearnFrame:
         with tab:
             self._heading = self._gui.add_html("", order=1.0, visible=False)
             self._way = self._gui.add_html(WAY, order=4.0, visible=False)
-            self._forward = self._gui.add_button(_NEXT, color=_BLUE, order=4.5, visible=False)
+            self._forward = self._gui.add_button(_NEXT, color=BLUE, order=4.5, visible=False)
             self._others = self._gui.add_button_group(" ", (_BACK, _LEAVE), order=5.0, visible=False)
         self._forward.on_click(lambda _: forward())
         self._others.on_click(lambda event: back() if event.target.value == _BACK else leave())

@@ -20,10 +20,10 @@ from momentum_lab.app.widgets import Bound, Post, nice_step
 from momentum_lab.app.wire import Truth
 from momentum_lab.events import LookBack
 from momentum_lab.lesson.record import EquationRecord
+from momentum_lab.palette import BLUE
 
 # How often an equation's numbers change, s.
 _PERIOD = 0.1
-_BLUE = (0, 114, 178)
 Answer = Callable[[int, Callable[[], float]], None]
 """Takes a prediction: of which step, and how it is read, so that of two quick changes the last one counts."""
 _OPEN, _CHOSEN = viser.Icon.CIRCLE, viser.Icon.CIRCLE_DOT
@@ -109,7 +109,7 @@ class NumberPage(Page):
         width = nice_step(step.low, step.high, middle)
         start = self._walk.answers.get(self._place, middle)
         self._slider: Any = gui.add_slider(f"I predict{unit}", step.low, step.high, width, start)
-        self._button = gui.add_button("That is my prediction", color=_BLUE, icon=viser.Icon.CHECK)
+        self._button = gui.add_button("That is my prediction", color=BLUE, icon=viser.Icon.CHECK)
         # What is typed or slid is the prediction at once; the button is for a learner whom the middle suits.
         self._button.on_click(lambda _: self._desk.answer(self._place, self._value))
         self._slider.on_update(lambda _: self._desk.answer(self._place, self._value))
@@ -134,7 +134,7 @@ class PlayPage(Page):
         self._try_out: TryOut | None = None
         self._labels = self._walk.runs_to_play()
         self._runs = gui.add_html("")
-        self._button = gui.add_button("Play", color=_BLUE, icon=viser.Icon.PLAYER_PLAY)
+        self._button = gui.add_button("Play", color=BLUE, icon=viser.Icon.PLAYER_PLAY)
         self._button.on_click(lambda _: self._desk.ask(PlayRun(self._next())))
         self.refresh()
 

@@ -18,6 +18,7 @@ from momentum_lab.errors import InputError
 from momentum_lab.events import ApplyPush, ApplyPushes, Foresee
 from momentum_lab.momentum.pendulum import pendulum_frequency, pendulum_impulse_bound
 from momentum_lab.momentum.support import distance_to_edge
+from momentum_lab.palette import VERMILLION
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
 
@@ -54,7 +55,7 @@ class PushPanel:
         self._still: Sample | None = None
         self._size_text = ""
         gui.add_html(html.BIG_NEXT)
-        self.button = gui.add_button("Push  (P)", color=(213, 94, 0), icon=viser.Icon.HAND_MOVE)
+        self.button = gui.add_button("Push  (P)", color=VERMILLION, icon=viser.Icon.HAND_MOVE)
         ask = gui.add_button(
             "What would it do?  (F)",
             color="gray",

@@ -19,6 +19,7 @@ from momentum_lab.app.wire import Truth
 from momentum_lab.beside import Beside
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.events import RunAgain, SetBeside
+from momentum_lab.palette import BLUE, VERMILLION
 
 AS_FIRST = "as the first"
 # How often the table changes on the screen, s.
@@ -77,8 +78,8 @@ class RunsPanel:
                 "Keep a run, change something, push again: the kept run goes along as a ghost, its curves dashed."
             )
         )
-        keep = gui.add_button(_KEEP, color=(0, 114, 178), icon=viser.Icon.PIN)
-        again = gui.add_button(_AGAIN, color=(213, 94, 0), icon=viser.Icon.REPEAT)
+        keep = gui.add_button(_KEEP, color=BLUE, icon=viser.Icon.PIN)
+        again = gui.add_button(_AGAIN, color=VERMILLION, icon=viser.Icon.REPEAT)
         self._ghost: Any = gui.add_checkbox("show A  (G)", True, disabled=True)
         self._forget = gui.add_button("Forget A", color="gray", icon=viser.Icon.PINNED_OFF, visible=False)
         self._table = gui.add_html("")

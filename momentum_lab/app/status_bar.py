@@ -15,6 +15,7 @@ from momentum_lab.app.time_bar import cell
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
 from momentum_lab.events import Branch, LookBack, Pause, Play, Reset, SetSpeed, StepOnce
+from momentum_lab.palette import BLUE
 from momentum_lab.status import Status
 
 INVITATION = "Push the robot: press P or the button."
@@ -63,7 +64,7 @@ class StatusBar:
         gui.add_html(cell("words"))
         self._sentence = gui.add_html(html.sentence(INVITATION))
         self._stand_up = gui.add_button(
-            "Stand up again  (R)", color=(0, 114, 178), icon=viser.Icon.ARROW_UP, visible=False
+            "Stand up again  (R)", color=BLUE, icon=viser.Icon.ARROW_UP, visible=False
         )
         gui.add_html(cell("buttons"))
         self._buttons = gui.add_button_group("time", _buttons(playing=True))
@@ -87,7 +88,7 @@ class StatusBar:
             clock,
         )
         self._branch = gui.add_button(
-            branch_words(()), color=(0, 114, 178), icon=viser.Icon.GIT_BRANCH, visible=False, hint=_GO_ON
+            branch_words(()), color=BLUE, icon=viser.Icon.GIT_BRANCH, visible=False, hint=_GO_ON
         )
         self._stand_up.on_click(lambda _: post(Reset()))
         self._buttons.on_click(lambda event: self._pressed(event.target.value))
