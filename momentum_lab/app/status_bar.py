@@ -81,7 +81,7 @@ class StatusBar:
                 0.01,
                 0.0,
                 hint="Stops time and shows what was; a line in the plots is where you are. "
-                "Play goes on from the end, the button below from there.",
+                "Play goes on from the end, B from there.",
             ),
             lambda seconds: LookBack(max(0.0, -seconds)),
             post,
