@@ -27,6 +27,7 @@ from momentum_lab.recording import Layout
 from momentum_lab.robot.geometry import LinkMesh
 from momentum_lab.robot.posture import standing_posture
 from tests.app.fakes import FakeClient
+from tests.app.loops import run
 from tests.conftest import assert_close
 
 TRIANGLE = (np.eye(3, dtype=np.float32), np.array([[0, 1, 2]], dtype=np.uint32))
@@ -418,7 +419,7 @@ def test_events_stay_in_order(desk):
             )
         await asyncio.get_running_loop().shutdown_default_executor()
 
-    asyncio.run(drag())
+    run(drag)
     (event,) = desk.posted
     assert event.push.force == round(0.2 * desk.scale.newtons_per_metre)
 

@@ -8,6 +8,7 @@ import threading
 import pytest
 
 from momentum_lab.app.wake import Wake
+from tests.app.loops import run
 
 
 class Sleeper:
@@ -25,7 +26,7 @@ class Sleeper:
 
 @pytest.mark.parametrize(("kind", "threads"), [(asyncio.Event, "theirs"), (Wake, "the loop's")])
 def test_sleepers_are_woken_in_the_thread_of_the_loop(kind: type[asyncio.Event], threads: str) -> None:
-    async def waking() -> list[int]:
+    async def waking() -> tuple[int, list[int]]:
         event, sleeper = kind(), Sleeper()
         event._waiters.append(sleeper)  # type: ignore[arg-type]
         other = threading.Thread(target=event.set)
@@ -33,11 +34,11 @@ def test_sleepers_are_woken_in_the_thread_of_the_loop(kind: type[asyncio.Event],
         other.join()
         assert event.is_set()
         event.set()  # as viser does afterwards, through the loop
-        return sleeper.woken
+        return threading.get_ident(), sleeper.woken
 
-    woken = asyncio.run(waking())
+    loop, woken = run(waking)
     assert len(woken) == 1
-    assert (woken[0] == threading.get_ident()) == (threads == "the loop's")
+    assert (woken[0] == loop) == (threads == "the loop's")
 
 
 def test_an_event_that_has_been_set_lets_the_next_one_through() -> None:
@@ -53,4 +54,4 @@ def test_an_event_that_has_been_set_lets_the_next_one_through() -> None:
         event.set()
         await asyncio.wait_for(waiting, 1.0)
 
-    asyncio.run(passing())
+    run(passing)
