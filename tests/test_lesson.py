@@ -194,8 +194,10 @@ def test_lesson_is_found_by_number_file_and_title(tmp_path: Path) -> None:
     assert lesson_files(tmp_path) == [path]
     for name in ("1", "01", "01_leaning_in", "leaning_in", "leaning-in", "Leaning in"):
         assert find_lesson(name, tmp_path) == path
+    (tmp_path / "00_broken.py").write_text("STEPS = = (")  # it comes first, and hides nobody
+    assert find_lesson("Leaning in", tmp_path) == path
     assert headline(path) == ("Leaning in", "You push a robot from behind. Where does it stop?")
-    with pytest.raises(InputError, match="lesson: got 2; allowed: 01_leaning_in"):
+    with pytest.raises(InputError, match="lesson: got 2; allowed: 00_broken, 01_leaning_in"):
         find_lesson("2", tmp_path)
     with pytest.raises(InputError, match="lesson: got nothing"):
         find_lesson("", tmp_path)

@@ -6,7 +6,7 @@ import ast
 import re
 import traceback
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -82,8 +82,9 @@ def find_lesson(name: str, folder: Path = LESSONS) -> Path:
         if name.strip() in (str(int(number)), number) or wanted in (_plain(path.stem), _plain(slug)):
             return path
     for path in files:
-        if wanted == _plain(headline(path)[0]):
-            return path
+        with suppress(LessonError):  # one that cannot be read has no title
+            if wanted == _plain(headline(path)[0]):
+                return path
     known = ", ".join(path.stem for path in files) or f"nothing, {folder} has no NN_title.py"
     raise InputError("lesson", name, known)
 
