@@ -77,7 +77,7 @@ STEPS = (
     ),
     lab.Compare(
         "Half the push never asked for more than the feet have. The whole push asked {twice} as far ahead, for "
-        "{outside} beyond the feet. In proportion, the feet are enough for {enough} of it.",
+        "{outside} beyond the feet. In proportion, with brakes as hard as this, the feet are enough for {enough}.",
         ("enough", "outside"),
     ),
     lab.Explain(

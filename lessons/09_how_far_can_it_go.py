@@ -54,8 +54,8 @@ MEASURES = {
 STEPS = (
     lab.Prose(
         "A robot whose body never turns is such a stick. It stands on a point, the CoP, that can move by "
-        "{reach}, from below the CoM to the toes: that is enough for a push of {bound} for {lasts}. After a "
-        "larger one the capture point, where the CoP must be to stop it, is beyond the toes."
+        "{reach}, from below the CoM to the toes: at best, all at once, that is enough for a push of {bound} "
+        "for {lasts}. After a larger one the capture point, where the CoP must be to stop it, is beyond the toes."
     ),
     lab.Number(
         "Of the stick's largest push, how much does a robot survive whose body may turn?", "ratio", 100, 300

@@ -1,6 +1,6 @@
 """Lateral push and the tightrope
 
-Someone on a tightrope is pushed to the left: which way do the arms and the free leg swing, and why?
+Someone on a tightrope is pushed to the left: which way do the arms and the free leg turn, and why?
 """
 
 import numpy as np
@@ -35,6 +35,12 @@ def share(words, side=""):
     return part
 
 
+def lean(session):
+    """How far the trunk leans to the left at most, °."""
+    x, y, z, w = session.recording.column("q")[:, 3:7].T
+    return np.degrees(np.arcsin(-2.0 * (w * x + y * z))).max()
+
+
 def beyond_edge(session):
     """How far the CMP is outside the foot's edge (n,), mm."""
     return 1e3 * (q.CMP_Y.values(session) - edge(session))
@@ -49,8 +55,9 @@ MEASURES = {
     "push": lab.of("push", q.push_force, "N"),
     "arms": lab.of("push", share(ARMS), "%"),
     "leg": lab.of("push", share(LEGS, "right"), "%"),
-    "foot": lab.of("push", lambda s: 1e3 * np.linalg.norm(swing_foot(s), axis=1).max(), "mm"),
+    "foot_right": lab.of("push", lambda s: -1e3 * swing_foot(s)[:, 0].min(), "mm"),
     "foot_up": lab.of("push", lambda s: 1e3 * swing_foot(s)[:, 1].max(), "mm"),
+    "lean": lab.of("push", lean, "°", ".1f"),
     "cmp": lab.at("push", AFTER, beyond_edge, "mm", ".1f"),
     "cop": lab.at("push", AFTER, inside_edge, "mm", ".1f"),
     "farthest": lab.of("push", lambda s: inside_edge(s).min(), "mm", ".1f"),
@@ -61,10 +68,12 @@ MEASURES = {
 
 STEPS = (
     lab.Prose(
-        "The robot stands on its left leg: no rope, but a narrow foot. A push of {push} comes from the right."
+        "The robot stands on its left leg: no rope, but a narrow foot. A push of {push} comes from the right. "
+        "To turn to the left is to turn like a wheel that rolls there: what is above its middle goes left, "
+        "what hangs below it goes right."
     ),
     lab.Choice(
-        "Which way do its arms and its free leg go round at first?",
+        "Which way do its arms and its free leg turn at first?",
         (
             lab.Option("To the right, against the push", lambda m: max(m["arms"], m["leg"]) <= -5.0),
             lab.Option("The arms one way, the leg the other", lambda m: m["arms"] * m["leg"] < -25.0),
@@ -73,15 +82,17 @@ STEPS = (
     ),
     lab.Number("How much of the whole body's angular momentum do the arms take?", "arms", 0, 100),
     lab.Play(
-        "You look from the front: its left is on your right. Watch the hands and the free foot.",
+        "You look from the front: its left is on your right. Slow time down. Watch the head, above the middle, and "
+        "the hands and the free foot, below it.",
         "push",
         ("push", "push direction"),
         view="Front",
     ),
     lab.Compare(
-        "Everything went to the left, with the push. The arms took {arms} of the angular momentum, the free leg "
-        "{leg}: it swung by {foot}, {foot_up} of it upward.",
-        ("arms", "leg", "foot"),
+        "All turned to the left, like a wheel that rolls with the push: the head leant left, and the free foot, "
+        "below, swung {foot_right} to the right and {foot_up} up. The arms took {arms} of the angular momentum, "
+        "the free leg {leg}.",
+        ("arms", "leg", "foot_right"),
     ),
     lab.Explain(
         "To stop the CoM the ground must push to the right, harder than a force through the CoM could. So the "
@@ -110,7 +121,8 @@ CLAIMS = (
     lab.Bound("the arms take much of it", "arms", low=20.0),
     lab.Bound("and the free leg", "leg", low=10.0),
     lab.Bound("they give it back", "left", high=10.0),
-    lab.Bound("the free foot swings", "foot", low=10.0),
+    lab.Bound("the free foot, below, swings to the right", "foot_right", low=5.0),
+    lab.Bound("the trunk, above, leans to the left", "lean", low=0.5),
     lab.Bound("upward too", "foot_up", low=5.0),
     lab.Bound("the CoM comes back", "end", high=5.0),
 )

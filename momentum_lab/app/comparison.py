@@ -42,6 +42,7 @@ class Comparison:
         self._paths: list[ForesightScene] = []
         self._foreseen_at = 0.0
         self._names: tuple[str, str] | None = None
+        self._end = 0.0
         self.kept: KeptRun | None = None
 
     @property
@@ -103,6 +104,7 @@ class Comparison:
         if self._loaded is None:
             return
         width = self._loaded.layout.width
+        self._note_way_back(sample.number("time") + frame.truth.behind)
         self._stories[0].add(rows_of(frame.history, width))
         if frame.other is None:
             self._stories[1] = Story(self._loaded.model, self._loaded.layout)
@@ -165,6 +167,16 @@ class Comparison:
             self._truth.push,
         ):
             self._pushed = (self._truth, self._other)
+
+    def _note_way_back(self, end: float) -> None:
+        """After a way back the run goes on with what has been chosen by then: that is what it is told apart by.
+
+        Args:
+            end: of the run, s.
+        """
+        if self._pushed is not None and self._truth is not None and end < self._end:
+            self._pushed = (self._truth, self._other)
+        self._end = end
 
     def _as_pushed(self) -> tuple[Truth, Truth | None]:
         """What is the case with both robots, with the choices under which they were pushed."""

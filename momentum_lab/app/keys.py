@@ -40,7 +40,7 @@ def add_keys(
         ("Play or pause", "K", status.toggle),
         ("What would this push do?", "F", push.ask),
         ("Repeat the last push", None, push.apply_again),
-        ("Help", "H", lambda: _show_help(client)),
+        ("Help", "H", _Help(client).toggle),
         ("Step 1 ms", "J", lambda: post(StepOnce(SMALL_STEP))),
         ("Step 20 ms", "L", lambda: post(StepOnce(LARGE_STEP))),
         ("Go on from the instant that is looked at", "B", lambda: post(Branch())),
@@ -75,9 +75,21 @@ def _triggered(act: Callable[[], None]) -> Callable[[Any], None]:
     return trigger
 
 
-def _show_help(client: viser.ClientHandle) -> None:
-    modal = client.gui.add_modal("How this lab works")
-    with modal:
-        client.gui.add_markdown(HELP)
-        close = client.gui.add_button("Close")
-    close.on_click(lambda _: modal.close())
+class _Help:
+    """The help page of a browser tab; there is one at most."""
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        self._gui = client.gui
+        self._modal: Any = None
+
+    def toggle(self) -> None:
+        """Open it, or close it: viser's own dialogs close by a button only, which a long page would hide below."""
+        if self._modal is not None:
+            self._modal.close()
+            self._modal = None
+            return
+        self._modal = self._gui.add_modal("How this lab works")
+        with self._modal:
+            close = self._gui.add_button("Close  (H)", color="gray")
+            self._gui.add_markdown(HELP)
+        close.on_click(lambda _: self.toggle())

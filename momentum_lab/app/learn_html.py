@@ -107,7 +107,7 @@ def equation(record: EquationRecord, time: float) -> str:
     return _box(
         f'<div class="eq n">{record.mathml(time)}</div>'
         f'<div class="n">at <b>{time:.2f} s</b>: both sides differ by <b>{_short(record.difference(time))} '
-        f'{escape(record.unit)}</b> <span class="dim">(over the run {_short(record.residual)}, '
+        f'{escape(record.unit)}</b> <span class="dim">(in most of the run at most {_short(record.residual)}, '
         f'allowed {_short(record.within)})</span></div><table class="dim">{words}</table>'
     )
 

@@ -97,7 +97,7 @@ def _lines(step: Step, played: Played) -> list[str]:
             f"  {step.equation.symbols[name].words}"
             for name, value in record["symbols"].items()
         )
-        left = f"   at {record['time']:g} s; residual over the run {record['residual']:.2g} {record['unit']}"
+        left = f"   at {record['time']:g} s; residual in most of the run {record['residual']:.2g} {record['unit']}"
         return [text, f"   {record['equation']}", *symbols, left]
     return [text]
 

@@ -17,7 +17,7 @@ from momentum_lab.app.runs_panel import AS_FIRST, RunsPanel
 from momentum_lab.app.view_panel import ViewSettings
 from momentum_lab.app.wire import Foreseen, Frame, Other
 from momentum_lab.beside import Beside
-from momentum_lab.events import ApplyPush, Foresee, Reset, RunAgain, SetBeside, SetPriority
+from momentum_lab.events import ApplyPush, Branch, Foresee, LookBack, Reset, RunAgain, SetBeside, SetPriority
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
 from tests.app.fakes import FakeClient
@@ -94,6 +94,22 @@ def test_names_follow_what_differs():
     desk.playback.take(SetPriority(0.25))
     desk.show()
     assert desk.node("/name").text == "priority 0.25"
+
+
+def test_a_run_that_was_gone_on_with_otherwise_says_so_in_the_table():
+    desk = Desk(None)
+    desk.playback.take(ApplyPush(PUSH))
+    desk.play(200)
+    desk.playback.take(LookBack(0.1))
+    desk.playback.take(SetPriority(1.0))
+    desk.playback.take(Branch())
+    desk.play(100)
+    desk.panel.wants_kept = True
+    desk.play(20)
+    desk.playback.take(SetPriority(0.5))  # for the next push
+    desk.playback.take(RunAgain())
+    desk.play(300)
+    assert re.search(r"priority</td>.*>1<.*>0.5<", desk.table)
 
 
 def test_two_robots_in_the_table():

@@ -85,3 +85,24 @@ def test_a_key_that_is_held_down_acts_once(desk, monkeypatch):
     now += 0.5
     desk.press("P")
     assert desk.done == ["push", "push"]
+
+
+def test_help_opens_once_and_its_key_closes_it(monkeypatch):
+    opened: list[FakeHandle] = []
+
+    def add_modal(_title: str) -> FakeHandle:
+        modal = FakeHandle()
+        modal.close = modal.remove
+        opened.append(modal)
+        return modal
+
+    monkeypatch.setattr(keys, "_REPEATED", -1.0)
+    desk = Desk()
+    desk.client.gui.add_modal, desk.client.gui.add_markdown = add_modal, lambda text: FakeHandle(text=text)
+    press = desk.commands["Help"][1]
+    for shown in (True, False, True):
+        press(None)
+        assert [not modal.removed for modal in opened][-1] == shown
+    desk.client.gui.widgets["Close  (H)"].set_by_person(True)
+    assert all(modal.removed for modal in opened)
+    assert len(opened) == 2
