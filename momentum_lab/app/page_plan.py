@@ -8,7 +8,7 @@ import viser
 
 LEFT = RIGHT = 350.0
 """Width of the panels at the sides, pixels."""
-BAR_HEIGHT = 166.0
+BAR_HEIGHT = 190.0
 """Of the bar below the picture and of what is free around it, pixels."""
 # Pages narrower than this, width over height, have no room for plots beside the picture or for many labels.
 _ROOMY = 1.1
