@@ -31,7 +31,7 @@ _GRID = "div:has(>div>.lab-bar)"
 _UNSEEN = "position:absolute;width:1px!important;height:1px;overflow:hidden;clip-path:inset(50%)"
 _STYLE = (
     "<style>div:has(>.lab-cell){display:none}"
-    f"{_GRID}{{display:grid;align-items:center;grid-template-columns:6fr 5fr;padding:0 .2em;"
+    f"{_GRID}{{display:grid;align-items:center;grid-template-columns:1fr 1fr;padding:0 .2em;"
     "grid-template-areas:'status time' 'status words' 'buttons speed' 'strip strip' 'look look'}"
     f"{_GRID}>*{{grid-area:words;min-width:0;padding-bottom:.25em}}"
     + "".join(f"{_GRID}>div:has(>.lab-{name})+*{{grid-area:{name}}}" for name in _CELLS)
