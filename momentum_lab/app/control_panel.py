@@ -77,7 +77,9 @@ class ControlPanel:
         self._next = -math.inf
         self._directions = _Directions(gui, post, truth)
         self._changes = ChangesPanel(gui, post, tell, truth)
-        self._gains = TuningPanel(gui, post, tell, truth)
+        self._place = gui.add_form(None)  # where gains of another controller find the way back to
+        with self._place:
+            self._gains = TuningPanel(gui, post, tell, truth)
 
     def _add_scenario(self, choices: Choices, truth: Truth) -> None:
         """Who stands where."""
@@ -160,7 +162,8 @@ class ControlPanel:
         self._directions.follow(truth)
         if truth.controller != self._gains.controller:
             self._gains.remove()
-            self._gains = TuningPanel(self._gui, self._post, self._tell, truth)
+            with self._place:
+                self._gains = TuningPanel(self._gui, self._post, self._tell, truth)
         self._gains.follow(truth)
         self._changes.follow(truth)
 

@@ -83,6 +83,9 @@ class FakeGui:
     def add_folder(self, label: str, **kw: Any) -> FakeHandle:
         return self._add(label, **kw)
 
+    def add_form(self, label: str | None, **kw: Any) -> FakeHandle:
+        return FakeHandle(label=label, **kw)
+
     def add_uplot(self, data: Any, series: Any, **kw: Any) -> FakeHandle:
         return self._add(f"plot {len(self.widgets)}", data=data, series=series, **kw)
 

@@ -84,6 +84,23 @@ def has_unit(label: str) -> bool:
     return bool(inside) and all(part.strip() in UNITS for part in inside.split(","))
 
 
+def folders(client: BareClient, label: str) -> list[str]:
+    """Where the folders of a name have been put, one after the other."""
+    found = [m for m in kept(client).everything if m["type"] == "GuiFolderMessage"]
+    return [message["container_uuid"] for message in found if message["props"]["label"] == label]
+
+
+def test_gains_of_another_controller_stay_where_the_first_ones_were(lab):
+    with BareClient(lab.url) as client:
+        client.received = Kept()
+        client.read_until(lambda _: folders(client, "Keep these gains"), PATIENCE)
+        client.set_value("controller", "whole-body-qp")
+        client.read_until(lambda _: len(folders(client, "Keep these gains")) == 2, PATIENCE)
+        places = {folders(client, name)[-1] for name in ("Gains", "Keep these gains")}
+        assert places == {folders(client, "Gains")[0]}
+        assert places != {folders(client, "Ground")[0]}  # that of another tab
+
+
 def test_every_number_has_a_unit_or_says_that_it_has_none(client):
     numbers = kept(client).props(*NUMBERS)
     assert len(numbers) > 25
