@@ -51,7 +51,9 @@ STEPS = (
     lab.Number(
         "How hard does the ground then push along the floor? Forward counts as positive.", "brake", -200, 200
     ),
-    lab.Play("Watch the green arrow lean.", "push", ("push", "push direction"), view="Side"),
+    lab.Play(
+        "Slow time down, and watch the green arrow lean.", "push", ("push", "push direction"), view="Side"
+    ),
     lab.Compare(
         "The arrow leans back: {size} against the motion. It never pulls down: it points up {upward} of the time.",
         ("brake", "upward"),

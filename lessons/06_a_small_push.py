@@ -46,7 +46,7 @@ def overshoot(session):
 
 MEASURES = {
     "push": lab.of("even", q.push_force, "N"),
-    "way": lab.of("even", lambda s: way(s).max(), "mm", ".1f"),
+    "way": lab.of("loose", lambda s: way(s).max(), "mm", ".1f"),
     "outside": lab.Measure(lambda runs: sum(saturated(run).sum() for run in runs.values()), "ticks"),
     "loose": lab.of("loose", back, "s", ".2f"),
     "even": lab.of("even", back, "s", ".2f"),
@@ -63,14 +63,14 @@ STEPS = (
         "the robot a spring that pulls the CoM back, and a damper that brakes it."
     ),
     lab.Choice(
-        "Three robots have the same spring. They brake little, more, and most: damping ratios of {ratios}. "
+        "Three robots have the same spring. Loose brakes little, even more, tight most: damping ratios {ratios}. "
         "Whose CoM is back first, for good?",
         (
             lab.Option(
                 "The loose one: nothing holds it up", lambda m: m["loose"] < min(m["even"], m["tight"])
             ),
-            lab.Option("The one in the middle", lambda m: m["even"] < min(m["loose"], m["tight"])),
-            lab.Option("The one that brakes hardest", lambda m: m["tight"] < min(m["loose"], m["even"])),
+            lab.Option("The even one, in the middle", lambda m: m["even"] < min(m["loose"], m["tight"])),
+            lab.Option("The tight one: it brakes hardest", lambda m: m["tight"] < min(m["loose"], m["even"])),
         ),
     ),
     lab.Number("How far does the loose one swing past its place, as part of its farthest?", "swing", 0, 100),
@@ -81,13 +81,13 @@ STEPS = (
         beside="even",
     ),
     lab.Compare(
-        "Back for good after {loose}, {even} and {tight}. The loose one swings past by {swing}, the one in the "
-        "middle by {no_swing}; the one that brakes hardest creeps.",
+        "Back for good after {loose}, {even} and {tight}. The loose one swings past by {swing}, the even one by "
+        "{no_swing}; the tight one creeps.",
         ("loose", "even", "tight", "swing"),
     ),
     lab.Explain(
         "The CoM of a body with dozens of joints really moves like one spring, Gamma_22, with one damper, "
-        "Gamma_21 (Eq. 38). The damping ratio is Gamma_21 over twice the root of Gamma_22.",
+        "Gamma_21 (Eq. 38). The sliders set both. The damping ratio is Gamma_21 over twice the root of Gamma_22.",
         "loose",
         0.5,
         lab.Equation(
@@ -98,7 +98,9 @@ STEPS = (
                 ),
                 "Gamma_22": lab.Symbol(lambda s: s.choices.gains.linear_stiffness, "1/s^2", "spring"),
                 "Gamma_21": lab.Symbol(lambda s: s.choices.gains.linear_damping, "1/s", "damper", ".1f"),
-                "r_d": lab.Symbol(lambda s: q.COM_X.values(s)[0], "m", "its place", ".4f"),
+                "r_d": lab.Symbol(
+                    lambda s: q.COM_X.values(s)[0], "m", "where it stood before the push", ".4f"
+                ),
                 "r_x": q.COM_X,
                 "dr_x": q.COM_SPEED_X,
             },

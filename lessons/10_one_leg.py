@@ -56,7 +56,9 @@ MEASURES = {
     "slack_gone": lab.of("turning", slack_gone, "s", ".2f"),
     "roll": lab.of("turning", lambda s: np.degrees(np.abs(body_roll(s)).max()), "degrees", ".1f"),
     "outward": lab.of("turning", outward, "degrees", ".1f"),
-    "cmp": lab.at("turning", EARLY, beyond_edge, "mm"),
+    "cmp": lab.at("turning", EARLY, beyond_edge, "mm", ".1f"),
+    "com": lab.at("turning", EARLY, lambda s: 1e3 * (q.COM_Y.values(s) - edge(s)), "mm", ".1f"),
+    "lead": lab.at("turning", EARLY, lambda s: 1e3 * (q.CMP_Y.values(s) - q.COM_Y.values(s)), "mm", ".1f"),
     "roll_gone": lab.of("turning", roll_gone, "s", ".2f"),
     "later": lab.of("turning", lambda s: roll_gone(s) - slack_gone(s), "s", ".2f"),
     "left_over": lab.of("turning", lambda s: 1e3 * np.linalg.norm(com_outside_goal(s)[-1]), "mm", ".1f"),
@@ -89,8 +91,8 @@ STEPS = (
     ),
     lab.Explain(
         "A force that turns the trunk outward passes by the CoM, and pushes it inward: its CMP is {cmp} outside "
-        "the edge (Eq. 23). The CoM is back first: after {slack_gone} it gets all the force it wants. Then the "
-        "trunk follows, upright after {roll_gone}.",
+        "the edge, the CoM by then only {com} (Eq. 23). The CoM is back first: after {slack_gone} it gets all the "
+        "force it wants. Then the trunk follows, upright after {roll_gone}.",
         "turning",
         EARLY,
         lab.Equation(
@@ -109,6 +111,7 @@ CLAIMS = (
     lab.Bound("the CoP is at its border", "pinned", low=0.3),
     lab.Bound("the body turns outward", "outward", low=10.0),
     lab.Bound("the CMP is outside the foot", "cmp", low=1.0),
+    lab.Bound("and farther out than the CoM", "lead", low=1.0),
     lab.Bound("first the CoM, then the body", "later", low=0.2),
     lab.Bound("the CoM comes back", "left_over", high=1.0),
 )
