@@ -74,6 +74,9 @@ class Page:
         """Push as the page says; False if it does not."""
         return False
 
+    def hand_in(self) -> None:
+        """Say what has been changed last: viser tells each change in a thread of its own, and one may be late."""
+
 
 class ChoicePage(Page):
     """A prediction by choosing."""
@@ -107,13 +110,18 @@ class NumberPage(Page):
         middle = 0.5 * (step.low + step.high)
         unit = f" ({step.unit})" if step.unit else ""
         width = nice_step(step.low, step.high, middle)
-        start = self._walk.answers.get(self._place, middle)
-        self._slider: Any = gui.add_slider(f"I predict{unit}", step.low, step.high, width, start)
+        self._said = self._walk.answers.get(self._place, middle)
+        self._slider: Any = gui.add_slider(f"I predict{unit}", step.low, step.high, width, self._said)
         self._button = gui.add_button("That is my prediction", color=BLUE, icon=viser.Icon.CHECK)
         # What is typed or slid is the prediction at once; the button is for a learner whom the middle suits.
         self._button.on_click(lambda _: self._desk.answer(self._place, self._value))
         self._slider.on_update(lambda _: self._desk.answer(self._place, self._value))
         self.refresh()
+
+    def hand_in(self) -> None:
+        """Say what has been typed or slid last."""
+        if self._value() != self._said:
+            self._desk.answer(self._place, self._value)
 
     def _value(self) -> float:
         """What the slider says; not a number if it says nothing that can be predicted."""

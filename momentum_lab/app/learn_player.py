@@ -98,6 +98,8 @@ class LessonPlayer:
 
     def forward(self) -> bool:
         """Open the next step, if it may come; False behind the last one."""
+        if self._page is not None:
+            self._page.hand_in()
         if self._walk.waits:
             return True
         if self._walk.last:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -37,9 +37,13 @@ class Store(dict):
     set = dict.__setitem__
 
 
-def opened(path: Path, asked: list[object], looks: list[str]) -> LessonPlayer:
+def opened(path: Path, asked: list[object], looks: list[str], gui: FakeGui | None = None) -> LessonPlayer:
     record = rehearsed(str(path), "g1")
-    desk = (FakeGui(), asked.append, asked.append, looks.append, print, lambda: None)
+
+    def answer(place: int, read: Callable[[], float]) -> None:
+        player.answer(place, read())
+
+    desk = (gui or FakeGui(), asked.append, asked.append, looks.append, answer, lambda: None)
     player = LessonPlayer(record, "one", Store(), Frame(), *desk)
     player.start()
     return player
@@ -66,3 +70,20 @@ def test_a_lesson_without_a_view_leaves_the_camera_alone(tmp_path: Path) -> None
     player.forward()
     assert not player.turns
     assert looks == []
+
+
+def test_a_number_that_nobody_has_heard_of_yet_is_the_prediction(tmp_path: Path) -> None:
+    """Who types 63 and goes on at once: the key may be told before the number."""
+    number = 'STEPS = (\n    lab.Number("How far does it go?", "way", 0, 100),'
+    gui = FakeGui()
+    player = opened(
+        written(tmp_path, ("STEPS = (", number), ('"seconds": 2.0', '"seconds": 0.4')), [], [], gui
+    )
+    slider = gui.widgets["I predict (mm)"]
+    player.forward()
+    assert player._walk.place == 0  # nobody has predicted anything
+    slider.set_by_person(6.0)
+    slider.value = 63.0
+    player.forward()
+    assert player._walk.answers == {0: 63.0}
+    assert player._walk.place == 1
