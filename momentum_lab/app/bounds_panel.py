@@ -23,7 +23,8 @@ _WHOLE = 5
 _EXPLAINED = f"(from {100 * ACTIVE:.0f} % of a limit on)"
 # Lines that are too long end in dots: what is below keeps its place.
 _CUT = 'style="white-space:nowrap;overflow:hidden;text-overflow:ellipsis"'
-_TABLE = '<table class="n" style="width:100%;border-collapse:collapse;table-layout:fixed">'
+# A tab that is longer than the page has its scroll bar over the last letter of a full row.
+_TABLE = '<table class="n" style="width:calc(100% - .8em);border-collapse:collapse;table-layout:fixed">'
 _RIGHT = 'style="text-align:right;width:4em"'
 
 
