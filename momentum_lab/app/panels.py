@@ -113,6 +113,20 @@ class Panels:
         gui.add_html(access_html.NAMES + typed_html.TYPED + look_html.STYLE + ON_A_PHONE)
         gui.add_html(keyboard_html.KEYS)
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
+        self._lesson_plots: tuple[viser.GuiFormHandle, Plots] | None = None
+        self._robot: LoadedRobot | None = None
+        learn_tab = self._add_left(gui, plan, lesson, demo)
+        self._gui, self._group, self._roomy = gui, group, plan.roomy
+        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
+        # The list of commands has them in this order: what is used most comes first.
+        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
+        self.learn.start(lesson)
+        demo.listen()
+
+    def _add_left(
+        self, gui: viser.GuiApi, plan: PagePlan, lesson: Path | None, demo: DemoStage
+    ) -> viser.GuiTabHandle:
+        """Plots, and the tab where lessons go."""
         left = gui.add_panel()
         # The browser opens the first tab; a phone has no room for plots beside the picture.
         learn_first = lesson is not None or not plan.roomy
@@ -125,20 +139,12 @@ class Panels:
             gui.add_html(_legend())
             self.plots = self._usual_plots = Plots(gui)
             demo.add_caption()
-        self._lesson_plots: tuple[viser.GuiFormHandle, Plots] | None = None
-        self._robot: LoadedRobot | None = None
         left.dock_left()
         left.set_width(LEFT)
         if not plan.roomy:
             # A phone shows what is folded away as one line.
             (left.minimize if lesson is None else left.expand)()
-
-        self._gui, self._group, self._roomy = gui, group, plan.roomy
-        self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
-        # The list of commands has them in this order: what is used most comes first.
-        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
-        self.learn.start(lesson)
-        demo.listen()
+        return learn_tab
 
     def begin_plots(self, robot: LoadedRobot) -> None:
         """Start with empty plots for a robot."""

@@ -6,13 +6,12 @@ import math
 import threading
 import traceback
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import viser
 
-from momentum_lab.app.camera import LOOSE, START_VIEW, TIGHT, VIEWS, Camera
+from momentum_lab.app.camera import LOOSE, START_VIEW, TIGHT, VIEWS
 from momentum_lab.app.comparison import Comparison
 from momentum_lab.app.control_panel import Choices
 from momentum_lab.app.demo_stage import DemoStage
@@ -22,20 +21,17 @@ from momentum_lab.app.first_pose import FirstPose
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
 from momentum_lab.app.link import Link
-from momentum_lab.app.mark_scene import MarkScene
 from momentum_lab.app.marks import FEW_LABELS, Theme
 from momentum_lab.app.notices import Notices
-from momentum_lab.app.overlays import Picture, overlays
 from momentum_lab.app.page_plan import PagePlan
 from momentum_lab.app.panels import Panels
-from momentum_lab.app.plate_scene import PlateScene
 from momentum_lab.app.profile import RenderProfile
 from momentum_lab.app.pulling import Reach
 from momentum_lab.app.reel import Reel
-from momentum_lab.app.robot_scene import RobotScene
 from momentum_lab.app.robots import LoadedRobot, RobotShelf
 from momentum_lab.app.share_panel import Sharing
 from momentum_lab.app.snapshot import view_of
+from momentum_lab.app.stage import Stage
 from momentum_lab.app.telling import told
 from momentum_lab.app.view_panel import ViewSettings
 from momentum_lab.app.wire import Frame, RunTaken, Truth, rows_of
@@ -44,29 +40,6 @@ from momentum_lab.errors import InputError
 from momentum_lab.events import Branch, Event
 from momentum_lab.recording import Sample
 from momentum_lab.run_file import Run
-
-
-@dataclass(frozen=True, slots=True)
-class Stage:
-    """What one robot of one browser tab is drawn with.
-
-    Attributes:
-        name: which robot.
-        loaded: the robot.
-        body: its meshes in the scene.
-        marks: its marks in the scene.
-        plates: the plates under its feet.
-        camera: what looks at it.
-        size: height of its CoM as it began, m.
-    """
-
-    name: str
-    loaded: LoadedRobot
-    body: RobotScene
-    marks: MarkScene
-    plates: PlateScene
-    camera: Camera
-    size: float
 
 
 class Visitor:
@@ -205,13 +178,8 @@ class Visitor:
         if self._stage is not None and self._stage.name == name:
             return self._stage
         if self._stage is not None:
-            self._stage.body.remove()
-            self._stage.marks.remove()
-            self._stage.plates.remove()
-        body = RobotScene(self._client, loaded, q)
-        marks, camera = MarkScene(self._client, size), Camera(self._client, size, self._plan.covered)
-        plates = PlateScene(self._client, loaded.model)
-        self._stage = Stage(name, loaded, body, marks, plates, camera, size)
+            self._stage.remove()
+        self._stage = Stage.of(self._client, name, loaded, q, size, self._plan.covered)
         self._look(self._view)
         if self._panels is not None:
             self._receive(self._panels, self._stage)
@@ -289,21 +257,15 @@ class Visitor:
             settings.changed = False
             stage.body.see_through(settings.see_through, settings.theme)
             self._comparison.see_through(settings)
-        picture = Picture(
-            stage.loaded.model, truth.push, truth.gains.get("safe_border", 0.0), settings.arrow_scale
-        )
         floor = (truth.floor, settings.theme)
         if floor != self._floor:
             self._floor = floor
             add_floor(self._client, *floor)
-        stage.marks.paint(settings.theme)
-        stage.plates.draw(sample["ground_pose"], truth.friction, truth.uneven)
-        stage.body.draw(sample["q"])
         place = self._comparison.middle(sample["com"][:2])
         stage.camera.follow(place, LOOSE if truth.fall is None and not self._comparison.other_fell else TIGHT)
         alone = self._comparison.spread is None
         labelled = settings.labelled if alone else settings.labelled & FEW_LABELS
-        stage.marks.draw(overlays(sample, picture), settings.shown, labelled)
+        stage.draw(truth, sample, settings, labelled)
 
     def _reach_other(self, panels: Panels, stage: Stage) -> None:
         """Let the robot beside the first be grabbed, too; what pushes one pushes both."""

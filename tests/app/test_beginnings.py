@@ -128,13 +128,19 @@ def test_an_opened_run_pushes_again():
     assert mine.truth(1.0).forgotten == pytest.approx((0.041,))
 
 
-def test_a_hand_that_is_forgotten_lets_go():
-    """Going on from the middle of a pull: nobody is there any more to end it."""
-    playback = Playback(Scenario("s", robot="g1"))
+def pulled(name: str) -> Playback:
+    """A robot that has been pulled for 60 ms, and then let go for as long."""
+    playback = Playback(Scenario(name, robot="g1"))
     playback.take(HoldPush(Push(force=10.0)))
     playback.tick(60)
     playback.take(LetGo())
     playback.tick(60)
+    return playback
+
+
+def test_a_hand_that_is_forgotten_lets_go():
+    """Going on from the middle of a pull: nobody is there any more to end it."""
+    playback = pulled("s")
     playback.take(LookBack(0.09))
     at = playback.shown.number("time")
     playback.take(Branch())
@@ -145,11 +151,7 @@ def test_a_hand_that_is_forgotten_lets_go():
 
 
 def test_an_opened_run_lets_go_when_it_did():
-    theirs = Playback(Scenario("theirs", robot="g1"))
-    theirs.take(HoldPush(Push(force=10.0)))
-    theirs.tick(60)
-    theirs.take(LetGo())
-    theirs.tick(60)
+    theirs = pulled("theirs")
     mine = Playback(Scenario("mine", robot="g1"))
     mine.take(OpenRun(theirs.taken(False).run))
     mine.tick(200)

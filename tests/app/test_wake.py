@@ -52,6 +52,6 @@ def test_an_event_that_has_been_set_lets_the_next_one_through() -> None:
         waiting = asyncio.create_task(event.wait())
         await asyncio.sleep(0)
         event.set()
-        await asyncio.wait_for(waiting, 1.0)
+        assert await asyncio.wait_for(waiting, 1.0)
 
     run(passing)

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Browser
 from scipy.ndimage import shift
 
-from momentum_lab.app import visitor
+from momentum_lab.app import stage
 from momentum_lab.app.overlays import Mark, overlays
 from tests.browser import pictures
 from tests.browser.pictures import BOUND, Place, crop, difference, golden, keep
@@ -86,7 +86,7 @@ def test_a_cop_12_px_aside_is_seen(scene: Scene, monkeypatch: pytest.MonkeyPatch
         ]
 
     with monkeypatch.context() as patch:
-        patch.setattr(visitor, "overlays", aside)
+        patch.setattr(stage, "overlays", aside)
         scene.switch("CMP")  # asks for a new picture
         scene.switch("CMP")
         apart = differences(crops(scene))["cop"]
