@@ -21,6 +21,8 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
 WORDS = "record stand --robot g1 --push 150 --push-direction 180 --seconds 3"
 EARLY, LATE = "0.2", "1.2"
 TOAST, BAR = 140, 60
+# What the player's button shows while it plays, and while it does not.
+PAUSE, PLAY = "svg.tabler-icon-player-pause-filled", "svg.tabler-icon-player-play-filled"
 # Of a picture without a robot this much is darker than 215: lines of the floor and labels; measured 0.008.
 FLOOR = 0.02
 
@@ -57,15 +59,18 @@ def first_and_later(page: Page) -> tuple[np.ndarray, np.ndarray]:
     early = seen(page, "recording-early.png")
     clock.blur()
     page.keyboard.press("Space")
+    expect(page.locator(PAUSE)).to_be_visible(timeout=PATIENCE)
     page.wait_for_function(f"Number(document.querySelector('input').value) > {LATE}", timeout=PATIENCE)
-    page.keyboard.press("Space")
-    stand_still(clock, LATE)  # a slow page has played on meanwhile
+    stand_still(clock, LATE)
     return early, seen(page, "recording-late.png")
 
 
 def stand_still(clock: Locator, instant: str) -> None:
+    """Pause what plays, and go to an instant; a number that the clock shows already would pause nothing."""
+    clock.page.locator(PAUSE).click(timeout=PATIENCE)
+    expect(clock.page.locator(PLAY)).to_be_visible(timeout=PATIENCE)
     clock.fill(instant)
-    clock.press("Enter")
+    expect(clock).to_have_value(instant, timeout=PATIENCE)
 
 
 def seen(page: Page, name: str) -> np.ndarray:
