@@ -12,6 +12,7 @@ from typing import Any
 
 import msgspec
 
+from momentum_lab.app.birth import born
 from momentum_lab.errors import LabError, LessonError
 from momentum_lab.lesson.loader import load_lesson
 from momentum_lab.lesson.record import LessonRecord, rehearsed
@@ -63,10 +64,8 @@ Listen = Callable[[Path, float], bytes]
 
 @contextmanager
 def _process(target: Callable[..., None], *given: Any) -> Iterator[Listen]:
-    context = multiprocessing.get_context("forkserver")
-    ours, theirs = context.Pipe(duplex=False)
-    process = context.Process(target=target, args=(theirs, *given), daemon=True, name="lesson")
-    process.start()
+    ours, theirs = multiprocessing.Pipe(duplex=False)
+    process = born(target, (theirs, *given), "lesson")
     theirs.close()
 
     def listen(file: Path, patience: float) -> bytes:

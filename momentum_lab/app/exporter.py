@@ -9,6 +9,7 @@ from multiprocessing.connection import Connection
 
 import msgspec
 
+from momentum_lab.app.birth import born
 from momentum_lab.app.wire import RunTaken, rows_of
 from momentum_lab.choices import Choices
 from momentum_lab.errors import InputError, LabError
@@ -41,10 +42,8 @@ def made_elsewhere(kind: str, taken: RunTaken) -> bytes:
     Raises:
         InputError: it cannot be made of this run.
     """
-    context = multiprocessing.get_context("forkserver")
-    ours, theirs = context.Pipe()
-    process = context.Process(target=main, args=(theirs, kind), daemon=True, name="export")
-    process.start()
+    ours, theirs = multiprocessing.Pipe()
+    process = born(main, (theirs, kind), "export")
     theirs.close()
     try:
         ours.send_bytes(msgspec.msgpack.encode(taken))

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 import multiprocessing
-import os
 import queue
 import threading
 from collections.abc import Collection, Iterator
-from multiprocessing import forkserver
 
 import msgspec
 
 from momentum_lab.app import worker
+from momentum_lab.app.birth import born
 from momentum_lab.app.demo_wire import DemoEvent
 from momentum_lab.app.inbox import checked_event
 from momentum_lab.app.lesson_wire import LessonEvent
@@ -38,17 +36,6 @@ _PATIENCE = 5.0
 _LONG_PATIENCE = 60.0
 
 
-# A process that forks must have no threads, and numerical libraries start theirs when they are loaded.
-_ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
-
-
-def warm_up() -> None:
-    """Start the process that workers are forked from: it has loaded everything once."""
-    multiprocessing.set_forkserver_preload([worker.__name__])
-    with _environment(_ONE_THREAD):
-        forkserver.ensure_running()
-
-
 class Link:
     """A worker with its own session.
 
@@ -59,15 +46,12 @@ class Link:
     """
 
     def __init__(self, first: Scenario | Run, robots: Collection[str], scenarios: Collection[str]) -> None:
-        context = multiprocessing.get_context("forkserver")
         self._robots, self._scenarios = robots, set(scenarios)
         self._taken: queue.Queue[RunTaken] = queue.Queue()
         self._asking = threading.Lock()
-        self._connection, theirs = context.Pipe()
+        self._connection, theirs = multiprocessing.Pipe()
         self._sending = threading.Lock()
-        arguments = (theirs, msgspec.json.encode(as_run(first)))
-        self.process = context.Process(target=worker.main, args=arguments, daemon=True, name="session")
-        self.process.start()
+        self.process = born(worker.main, (theirs, msgspec.json.encode(as_run(first))), "session")
         theirs.close()
 
     def post(self, event: Event) -> None:
@@ -151,18 +135,3 @@ class Link:
                 self._connection.send_bytes(data)
             except OSError:
                 return  # the session has gone; whoever reads the frames finds out
-
-
-@contextlib.contextmanager
-def _environment(values: dict[str, str]) -> Iterator[None]:
-    """Other values of some environment variables, for a while."""
-    before = {name: os.environ.get(name) for name in values}
-    os.environ.update(values)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value

@@ -15,10 +15,10 @@ from types import TracebackType
 
 import viser
 
+from momentum_lab.app.birth import warm_up
 from momentum_lab.app.control_panel import Choices
 from momentum_lab.app.first_pose import FirstPose
 from momentum_lab.app.library import Library
-from momentum_lab.app.link import warm_up
 from momentum_lab.app.profile import NORMAL, RenderProfile
 from momentum_lab.app.quiet import quiet
 from momentum_lab.app.robots import RobotShelf

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import gc
 import math
-import signal
 import time
 from collections.abc import Callable
 from multiprocessing.connection import Connection
@@ -65,7 +64,6 @@ def main(connection: Connection, first: bytes) -> None:
         connection: the worker's end of the pipe.
         first: the run to start with, as JSON.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     with threadpool_limits(1), connection:
         try:
             Worker(connection, Playback(msgspec.json.decode(first, type=Run))).run()

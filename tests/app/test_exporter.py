@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from momentum_lab.app.birth import warm_up
 from momentum_lab.app.exporter import finished, made, made_elsewhere
-from momentum_lab.app.link import warm_up
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.snapshot import encoded
 from momentum_lab.app.wire import RunTaken, packed, unpacked_answer

@@ -9,7 +9,8 @@ from itertools import pairwise
 
 import pytest
 
-from momentum_lab.app.link import Link, warm_up
+from momentum_lab.app.birth import warm_up
+from momentum_lab.app.link import Link
 from momentum_lab.app.wire import Frame
 from momentum_lab.errors import InputError
 from momentum_lab.events import (

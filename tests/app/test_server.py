@@ -285,7 +285,7 @@ def test_ctrl_c_and_sigterm_end_it_cleanly(served, number):
         assert len(below) >= 2
         for pid in (process.pid, *below) if number == signal.SIGINT else (process.pid,):
             os.kill(pid, number)  # a terminal sends Ctrl+C to all of them
-        out, err = process.communicate(timeout=PATIENCE)
+    out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0
     assert "Traceback" not in err
     assert "viser" not in out
