@@ -66,4 +66,4 @@ class Timeline:
             session.tick()
 
     def _time(self, snapshot: Snapshot) -> float:
-        return float(snapshot.changing["_tick_of_run"] * self._session.scenario.timestep)
+        return float(snapshot.tick_of_run * self._session.scenario.timestep)

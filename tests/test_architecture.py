@@ -24,6 +24,7 @@ FLOORS: tuple[frozenset[str], ...] = (
         {
             "active_bounds",
             "beside",
+            "changing",
             "choices",
             "patience",
             "effects",
@@ -38,6 +39,7 @@ FLOORS: tuple[frozenset[str], ...] = (
             "recording",
             "session",
             "start",
+            "steering",
             "terrain",
             "timeline",
             "trace",

@@ -84,7 +84,7 @@ def pelvis_turn(session: Session) -> np.ndarray:
 
 def motion_done(session: Session) -> np.ndarray:
     """How far the joints of the scenario's motion are on their way (n, joints): 1 is all of it."""
-    reach = session.motion_reach
+    reach = session.steering.motion_reach
     moving = np.flatnonzero(reach)
     angles = session.recording.column("q")[:, 7 + moving]
     return np.asarray((angles - angles[0]) / reach[moving])
