@@ -233,18 +233,12 @@ class Session:
         return output
 
     def _record(self, dynamics: Dynamics, output: ControlOutput, step: Step, plates: FootGround) -> Sample:
-        tick = Tick(
-            self._real,
-            self.time,
-            self.scenario.timestep,
-            dynamics,
-            output,
-            step,
-            plates,
-            self.choices.priority,
-            self.fall is not None,
+        fallen, priority = self.fall is not None, self.choices.priority
+        clock = self.time, self.scenario.timestep
+        observe(
+            self.recording.next_row(),
+            Tick(self._real, *clock, dynamics, output, step, plates, priority, fallen),
         )
-        observe(self.recording.next_row(), tick)
         return self.recording.latest
 
     def _advance(self, output: ControlOutput, step: Step) -> None:

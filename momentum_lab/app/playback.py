@@ -9,7 +9,7 @@ from momentum_lab.app.companion import Companion
 from momentum_lab.app.foresight import Foresight
 from momentum_lab.app.opened import NOTHING_OPENED, OpenedRun
 from momentum_lab.app.restart import named_run, once_more, with_robot
-from momentum_lab.app.truth import Clock, taken_of, truth_of
+from momentum_lab.app.truth import Clock, recorded_of, taken_of, truth_of
 from momentum_lab.app.wire import Foreseen, OpenRun, RunTaken, Truth
 from momentum_lab.beside import Beside
 from momentum_lab.errors import InputError, SimulationError
@@ -165,13 +165,17 @@ class Playback:
         tick = self.session.ticks - self._behind - 1
         return self._forgetting.times(self.session, tick, self._opened.events) if self._behind else ()
 
-    def taken(self, recording: bool) -> RunTaken:
-        """The run as it is now, with the samples of both robots or without; the second is in its scenario."""
-        taken = taken_of(self.session, self._waiting, self._difference, recording)
-        if self.beside is None or not recording:
-            return taken
-        other = taken_of(self.beside.session, self.beside.waiting, None, recording)
-        return msgspec.structs.replace(taken, other=other)
+    def taken(self) -> RunTaken:
+        """The run as it is now, without samples; a second robot is in its scenario."""
+        return taken_of(self.session, self._waiting, self._difference)
+
+    def recorded(self) -> RunTaken:
+        """The run as it is now, with the samples of both robots."""
+        recorded = recorded_of(self.session, self._waiting, self._difference)
+        if self.beside is None:
+            return recorded
+        other = recorded_of(self.beside.session, self.beside.waiting, None)
+        return msgspec.structs.replace(recorded, other=other)
 
     @property
     def _difference(self) -> Beside | None:

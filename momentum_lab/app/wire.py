@@ -35,9 +35,11 @@ class TakeBack(msgspec.Struct, frozen=True, tag=True):
 
 
 class RunWanted(msgspec.Struct, frozen=True, tag=True):
-    """What has been done so far has to be told, with the recording or without."""
+    """What has been done so far has to be told."""
 
-    recording: bool
+
+class RecordingWanted(msgspec.Struct, frozen=True, tag=True):
+    """What has been done so far has to be told, with all samples."""
 
 
 class Fallen(msgspec.Struct, frozen=True):
@@ -211,7 +213,8 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
     other: RunTaken | None = None
 
 
-Message = events.Event | LessonEvent | DemoEvent | FrameTaken | FrameWanted | OpenRun | TakeBack | RunWanted
+Asked = FrameTaken | FrameWanted | OpenRun | TakeBack | RunWanted | RecordingWanted
+Message = events.Event | LessonEvent | DemoEvent | Asked
 Answer = Frame | RunTaken
 
 _encoder = msgspec.msgpack.Encoder()

@@ -33,7 +33,7 @@ def playback() -> Playback:
 
 @pytest.fixture(scope="module")
 def taken(playback) -> RunTaken:
-    return playback.taken(recording=True)
+    return playback.recorded()
 
 
 def test_a_run_goes_through_the_pipe(taken):
@@ -73,7 +73,7 @@ def test_a_recording_made_elsewhere_is_the_one_made_here(taken):
 
 def test_what_cannot_be_made_is_told():
     warm_up()
-    empty = Playback(Scenario("s", robot="g1")).taken(recording=False)
+    empty = Playback(Scenario("s", robot="g1")).taken()
     with pytest.raises(InputError, match=r"^download: got report; allowed: .*at least one tick"):
         made_elsewhere("report", empty)
 
@@ -92,8 +92,8 @@ def test_both_robots_are_in_what_is_taken():
     playback.tick(20)
     playback.take(ApplyPush(Push(force=40.0)))
     playback.tick(20)
-    assert playback.taken(recording=False).other is None
-    run = finished(unpacked_answer(packed(playback.taken(recording=True))))
+    assert playback.taken().other is None
+    run = finished(unpacked_answer(packed(playback.recorded())))
     session = playback.beside.session
     assert np.array_equal(run.beside.recording.rows(), session.recording.rows(), equal_nan=True)
     assert (run.choices.priority, run.beside.choices.priority) == (0.0, 1.0)

@@ -46,7 +46,7 @@ def original() -> Playback:
 @pytest.fixture
 def opened(original) -> Playback:
     playback = Playback(Scenario("mine", robot="g1"))
-    playback.take(OpenRun(original.taken(False).run))
+    playback.take(OpenRun(original.taken().run))
     return playback
 
 
@@ -119,7 +119,7 @@ def test_both_robots_of_a_run_do_what_was_done():
     theirs.take(ApplyPush(Push(force=60.0)))
     theirs.take(SetGains({"linear_damping": 12.0, "linear_stiffness": 40.0}))
     theirs.tick(40)
-    run = theirs.taken(False).run
+    run = theirs.taken().run
     mine = Playback(Scenario("mine", robot="g1"))
     mine.take(OpenRun(run))
     mine.tick(500)
