@@ -110,6 +110,8 @@ class Session:
         self.log: list[LoggedEvent] = []
         self.ticks = self._tick_of_run = 0
         self._inbox: deque[SessionEvent] = deque()
+        # Choices and ground once all that is in the inbox has been done.
+        self._coming = (self.choices, self._ground)
         self._stand_up()
 
     @property
@@ -156,7 +158,7 @@ class Session:
         Raises:
             InputError: the event asks for something that does not exist or is out of range.
         """
-        self._check(event)
+        self._coming = self._checked(event)
         self._inbox.append(event)
 
     def choices_after(self, events: Iterable[SessionEvent]) -> Choices:
@@ -169,12 +171,12 @@ class Session:
         Raises:
             InputError: one asks for something that does not exist or is out of range.
         """
-        waiting = tuple(self._inbox)
+        waiting, coming = tuple(self._inbox), self._coming
         try:
             for event in events:
                 self.post(event)
         finally:
-            self._inbox = deque(waiting)
+            self._inbox, self._coming = deque(waiting), coming
 
     def tick(self) -> Sample:
         """One step of control and physics.
@@ -249,12 +251,18 @@ class Session:
         if not step.state.is_finite():
             raise SimulationError(f"the state is not finite after {self.time:.3f} s; the recording is kept")
 
-    def _check(self, event: SessionEvent) -> None:
-        """Refuse what cannot be done, before it is in the inbox."""
+    def _checked(self, event: SessionEvent) -> tuple[Choices, Ground]:
+        """What will be the case after an event that comes after those in the inbox; refuses what cannot be done."""
         robot, engine = self.robot, self.scenario.engine
-        check_mismatch(engine, self.choices_after(self._inbox).after(event, robot).mismatch)
-        check_ground(engine, ground_after(self._ground, event, robot, self.time))
+        choices, ground = self._coming if self._inbox else (self.choices, self._ground)
+        choices = choices.after(event, robot)
+        ground = ground_after(ground, event, robot, self.time)
+        if isinstance(event, Reset):
+            ground = self._first_ground
+        check_mismatch(engine, choices.mismatch)
+        check_ground(engine, ground)
         pushed_after(self._pushed, event, robot, self.time)
+        return choices, ground
 
     def _apply(self, event: SessionEvent) -> None:
         self.choices = self.choices.after(event, self.robot)
