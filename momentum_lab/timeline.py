@@ -46,6 +46,10 @@ class Timeline:
         if not self._snapshots or self._session.ticks - self._snapshots[-1].ticks >= _EVERY:
             self._snapshots.append(self._session.snapshot())
 
+    def remembers(self, ticks: int) -> bool:
+        """Whether the session can go back so many ticks."""
+        return self._snapshots[0].ticks <= self._session.ticks - ticks
+
     def go_back(self, ticks: int) -> None:
         """Let the session be where it was so many ticks ago, and forget what came after.
 

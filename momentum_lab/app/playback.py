@@ -222,6 +222,10 @@ class Playback:
         if not self._behind:
             self.playing = self.stopped is None
             return
+        if not self._timeline.remembers(self._behind + 1):
+            self._pass_on(Reset())  # the first sample of a robot that was stood up: it is stood up again
+            self.playing = True
+            return
         chosen = self.session.choices_after(self._waiting)
         # The sample that is looked at is the first of the branch: it is simulated again, under the new choices.
         self._timeline.go_back(self._behind + 1)
