@@ -219,7 +219,6 @@ Answer = Frame | RunTaken
 
 _encoder = msgspec.msgpack.Encoder()
 _message_decoder = msgspec.msgpack.Decoder(Message)
-_frame_decoder = msgspec.msgpack.Decoder(Frame)
 _answer_decoder = msgspec.msgpack.Decoder(Answer)
 
 
@@ -231,11 +230,6 @@ def packed(message: Message | Answer) -> bytes:
 def unpacked_message(data: bytes) -> Message:
     """The message that `packed` has written."""
     return _message_decoder.decode(data)
-
-
-def unpacked_frame(data: bytes) -> Frame:
-    """The frame that `packed` has written."""
-    return _frame_decoder.decode(data)
 
 
 def unpacked_answer(data: bytes) -> Answer:
