@@ -14,6 +14,8 @@ from momentum_lab.momentum.directions import text_of
 from momentum_lab.physics.push import Push
 
 NOTHING = "–"
+LAY_THERE = "had fallen already"
+"""Of a robot that was put beside one that lay on the ground."""
 
 
 def choices(truth: Truth) -> dict[str, str]:

@@ -12,7 +12,7 @@ import msgspec
 import viser
 
 from momentum_lab.app import html
-from momentum_lab.app.differences import NOTHING
+from momentum_lab.app.differences import LAY_THERE, NOTHING
 from momentum_lab.app.story import Facts
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
@@ -197,6 +197,8 @@ def _row(name: str, values: tuple[str, ...]) -> str:
 
 
 def _result(facts: Facts) -> str:
+    if facts.lay_there:
+        return LAY_THERE
     return "stands" if facts.fall_time is None else f"fell after {facts.fall_time:.2f} s"
 
 

@@ -94,6 +94,7 @@ class Truth(msgspec.Struct, frozen=True):
         opened: the run that has been opened; None when it is no opened run that plays.
         pushed: when pushes have begun since the robot stood up, until the end of the run, s.
         forgotten: those of them that going on from what is looked at would not repeat, s.
+        since: when this robot came beside another, s of the run; what fell before has not fallen by itself.
     """
 
     run: int
@@ -125,6 +126,12 @@ class Truth(msgspec.Struct, frozen=True):
     opened: Opened | None = None
     pushed: tuple[float, ...] = ()
     forgotten: tuple[float, ...] = ()
+    since: float = 0.0
+
+    @property
+    def lay_there(self) -> bool:
+        """Whether the robot had fallen already when it came."""
+        return self.fall is not None and self.fall.time < self.since
 
 
 class Other(msgspec.Struct, frozen=True):
