@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -68,13 +69,24 @@ def heading(title: str, session: Session | FinishedRun) -> str:
     return f"{title}\n{session.robot.spec.title}, {pushes or 'no push'}"
 
 
-def cut_spikes(axes: Any) -> None:
-    """Let spikes of a few ticks run out of the picture where they would flatten everything else, and say so."""
+def show_at_least(axes: Any, least: float) -> None:
+    """Let a picture show everything from minus this to this: the noise of a robot at rest is then a level line."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, -least), max(high, least))
+
+
+def cut_spikes(axes: Any, least: float = -math.inf) -> None:
+    """Let spikes of a few ticks run out of the picture where they would flatten everything else, and say so.
+
+    Args:
+        axes: a picture.
+        least: it will show at least from minus this to this; what stays within is no spike.
+    """
     values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.get_lines()])
     low, high = np.nanpercentile(values, [0.1, 99.9])
     room = 0.15 * (high - low)
     highest, lowest = np.nanmax(values), np.nanmin(values)
-    if highest <= high + room and lowest >= low - room:
+    if highest <= max(high + room, least) and lowest >= min(low - room, -least):
         return
     axes.set_ylim(low - room, high + room)
     axes.text(

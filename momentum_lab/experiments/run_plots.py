@@ -23,13 +23,16 @@ from momentum_lab.experiments.canvas import (
     cut_spikes,
     finish,
     heading,
+    show_at_least,
 )
+from momentum_lab.experiments.least_span import LEAST
 from momentum_lab.finished import FinishedRun
 from momentum_lab.summary import corners_in_world
 
 _MOST_POINTS = 4000
 _DOTS_PER_INCH = 110
 _RATES = (("desired", DESIRED, "--"), ("admissible", ADMISSIBLE, "-"), ("measured", MEASURED, "-"))
+_ROWS = ("linear", "angular", "momenta")
 # A sole that presses less than this on the ground does not support, N.
 _LEAST_SUPPORT = 1.0
 
@@ -56,8 +59,10 @@ def over_time(run: FinishedRun) -> Any:
         color=SPIN,
         label="angular, about the axis across (kg m²/s)",
     )
-    for row in axes[1:3, 0]:
-        cut_spikes(row)
+    for row, name in zip(axes[1:3, 0], _ROWS, strict=False):
+        cut_spikes(row, LEAST[name])
+    for row, name in zip(axes[1:, 0], _ROWS, strict=True):
+        show_at_least(row, LEAST[name])
     for row in axes[1:, 0]:
         band(row, run)
     finish(axes[1, 0], "Rate of linear momentum along the push", "", "N")
