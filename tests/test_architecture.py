@@ -25,6 +25,7 @@ FLOORS: tuple[frozenset[str], ...] = (
             "active_bounds",
             "beside",
             "choices",
+            "choice_words",
             "patience",
             "effects",
             "fall",

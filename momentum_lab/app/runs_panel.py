@@ -12,11 +12,12 @@ import msgspec
 import viser
 
 from momentum_lab.app import html
-from momentum_lab.app.differences import LAY_THERE, NOTHING
+from momentum_lab.app.differences import LAY_THERE
 from momentum_lab.app.story import Facts
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
 from momentum_lab.beside import Beside
+from momentum_lab.choice_words import NOTHING
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.events import RunAgain, SetBeside
 from momentum_lab.palette import BLUE, VERMILLION
