@@ -31,10 +31,13 @@ class Companion:
         session: where the first session is, between two ticks.
         beside: what it does differently.
         since: when it came, s of the run; what happened before is the first robot's.
+
+    Attributes:
+        since: the same; 0 once it has stood up again.
     """
 
     def __init__(self, session: Session, beside: Beside, since: float = 0.0) -> None:
-        self.session, self.beside, self._since = session, beside, since
+        self.session, self.beside, self.since = session, beside, since
         self.stopped: str | None = None
         self.waiting: list[SessionEvent] = []
         self._timeline = Timeline(session)
@@ -49,7 +52,7 @@ class Companion:
         if self._is_for_both(event):
             self._post(event)
         if isinstance(event, Reset):
-            self.stopped, self._since = None, 0.0
+            self.stopped, self.since = None, 0.0
 
     def align(self, first: Choices) -> None:
         """Make this robot's choices those of the first one, but for the differences."""
@@ -98,7 +101,7 @@ class Companion:
             failure=session.last_failure,
             failures=session.solver_failures,
             stopped=self.stopped,
-            since=self._since,
+            since=self.since,
         )
 
     def _is_for_both(self, event: SessionEvent) -> bool:

@@ -105,6 +105,7 @@ def finished(taken: RunTaken, robot: RobotModel | None = None) -> FinishedRun:
         taken.failures,
         taken.com_speed,
         None if taken.other is None else finished(taken.other, robot),
+        taken.since,
     )
 
 

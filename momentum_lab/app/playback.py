@@ -171,7 +171,7 @@ class Playback:
         if self.beside is None or not recording:
             return taken
         other = taken_of(self.beside.session, self.beside.waiting, None, recording)
-        return msgspec.structs.replace(taken, other=other)
+        return msgspec.structs.replace(taken, other=msgspec.structs.replace(other, since=self.beside.since))
 
     @property
     def _difference(self) -> Beside | None:

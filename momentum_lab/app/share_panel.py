@@ -104,8 +104,8 @@ class SharePanel:
         self._what = gui.add_dropdown(
             "file",
             tuple(_FILES),
-            hint="All but the run file hold the last minute since the robot stood up. Pictures, recordings and "
-            "films show both robots, the others the first.",
+            hint="All but the run file hold the last minute since the robot stood up. The trace holds the first "
+            "robot, all others both.",
         )
         self._download = gui.add_button("Download", color="gray", icon=viser.Icon.DOWNLOAD)
         self._progress = gui.add_html("", visible=False)

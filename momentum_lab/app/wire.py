@@ -206,6 +206,7 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
         failures: how many solves have failed.
         com_speed: of the CoM against the ground under the feet at the end, m/s.
         other: the robot beside the first; None when there is none, or no samples were wanted.
+        since: when this robot came, s of the run.
     """
 
     run: Run
@@ -216,6 +217,7 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
     failures: int
     com_speed: float
     other: RunTaken | None = None
+    since: float = 0.0
 
 
 Message = events.Event | LessonEvent | DemoEvent | FrameTaken | FrameWanted | OpenRun | TakeBack | RunWanted

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from momentum_lab.choice_words import names_of_chosen
+from momentum_lab.experiments.both import both
 from momentum_lab.experiments.canvas import COM, COP, INK, LINEAR, MEASURED, SPIN
 from momentum_lab.experiments.thinned import Thinned, projected
 from momentum_lab.finished import FinishedRun
@@ -14,12 +14,6 @@ from momentum_lab.finished import FinishedRun
 _DASHED = (0, (4, 2.5))
 _SILENT = "_second"  # such a name stands in no legend
 _POINTS = (("com", COM), ("cop_measured", COP))
-
-
-def names(run: FinishedRun) -> tuple[str, str]:
-    """What to call the two robots of a run with a second one."""
-    assert run.beside is not None
-    return names_of_chosen(run.choices, run.beside.choices)
 
 
 def beside_points(axes: Any, run: FinishedRun, forward: np.ndarray, origin: float) -> None:
@@ -35,8 +29,7 @@ def beside_points(axes: Any, run: FinishedRun, forward: np.ndarray, origin: floa
         return
     for name, color in _POINTS:
         _draw(axes, column, 100.0 * (column.until_fall(name)[:, :2] @ forward - origin), color)
-    for name, style in zip(names(run), ("-", _DASHED), strict=True):
-        axes.plot([], [], color=INK, ls=style, lw=1.2, label=name)
+    _name(axes, run)
 
 
 def beside_rate(axes: Any, run: FinishedRun, axis: np.ndarray) -> list[Any]:
@@ -60,12 +53,18 @@ def beside_paths(axes: Any, run: FinishedRun) -> None:
     for name, color in reversed(_POINTS):
         path = column.until_fall(name)
         axes.plot(path[:, 0], path[:, 1], color=color, ls=_DASHED, lw=1.2, label=_SILENT)
-    for name, style in zip(names(run), ("-", _DASHED), strict=True):
+    _name(axes, run)
+
+
+def _name(axes: Any, run: FinishedRun) -> None:
+    """Say in the legend which curves are whose."""
+    for (name, _), style in zip(both(run), ("-", _DASHED), strict=True):
         axes.plot([], [], color=INK, ls=style, lw=1.2, label=name)
 
 
 def _second(run: FinishedRun) -> Thinned | None:
-    return None if run.beside is None or not len(run.beside.recording) else Thinned(run.beside)
+    _, *others = both(run)
+    return Thinned(others[0][1]) if others else None
 
 
 def _draw(axes: Any, column: Thinned, values: np.ndarray, color: str) -> list[Any]:

@@ -12,13 +12,17 @@ from matplotlib.colors import to_hex
 
 from momentum_lab.beside import Beside
 from momentum_lab.experiments.run_plots import on_the_ground, over_time
+from momentum_lab.experiments.run_report import report
 from momentum_lab.experiments.run_table import table
+from momentum_lab.fall import Fall
 from momentum_lab.finished import FinishedRun
+from momentum_lab.headless import Timing
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Recording
 from momentum_lab.replay import replayed
 from momentum_lab.run_file import Run
 from momentum_lab.scenario import Scenario, sides
+from momentum_lab.summary import summarize
 
 LATE = 60
 TICKS = 300
@@ -113,3 +117,23 @@ def test_a_thinner_table_has_both_at_the_same_instants(pair):
     times = [(row[0], row[len(row) // 2]) for row in rows[1:]]
     assert len(times) == 100
     assert all(first == second for first, second in times[20:86])
+
+
+def test_a_report_has_both_side_by_side(pair):
+    page = report(pair).decode()
+    summaries = [summarize(run, Timing(np.zeros(0), np.inf)) for run in (pair, pair.beside)]
+    momenta = "".join(f"<td>{each.peak_angular_momentum:.2f} kg m²/s</td>" for each in summaries)
+    assert f"<td>angular momentum at most</td>{momenta}" in page
+    assert "<th></th><th>priority 0</th><th>priority 1</th>" in page
+    assert "<td>priority</td><td>0</td><td>1</td>" in page
+    for words in ("priority 0: stands", "priority 1: stands"):
+        assert f'<p class="result">{words}' in page
+    for heading in ("What was checked: priority 0", "What was checked: priority 1"):
+        assert f"<h2>{heading}</h2>" in page
+
+
+def test_a_report_blames_nobody_for_lying_where_another_fell(pair):
+    fallen = replace(pair.beside, fall=Fall(0.02, "x"), since=LATE * 1e-3)
+    assert "priority 1: had fallen already when it came" in report(replace(pair, beside=fallen)).decode()
+    own = replace(fallen, fall=Fall(0.2, "the CoM sank"))
+    assert "priority 1: fell at 0.20 s: the CoM sank" in report(replace(pair, beside=own)).decode()
