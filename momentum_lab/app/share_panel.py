@@ -104,8 +104,7 @@ class SharePanel:
         self._what = gui.add_dropdown(
             "file",
             tuple(_FILES),
-            hint="All but the run file hold the last minute since the robot stood up. The trace holds the first "
-            "robot, all others both.",
+            hint="All but the run file hold the last minute since the robot stood up. All hold both robots.",
         )
         self._download = gui.add_button("Download", color="gray", icon=viser.Icon.DOWNLOAD)
         self._progress = gui.add_html("", visible=False)

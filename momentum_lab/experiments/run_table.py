@@ -9,11 +9,10 @@ import numpy as np
 
 from momentum_lab.experiments.run_columns import column_names
 from momentum_lab.finished import FinishedRun
+from momentum_lab.trace import SECOND
 
 MOST_ROWS = 10_000
 """More than a spreadsheet likes."""
-SECOND = "second/"
-"""What the names of the second robot's columns begin with."""
 
 
 def table(run: FinishedRun, most: int = MOST_ROWS) -> bytes:

@@ -98,6 +98,11 @@ def test_both_robots_are_in_what_is_taken():
     assert np.array_equal(run.beside.recording.rows(), session.recording.rows(), equal_nan=True)
     assert (run.choices.priority, run.beside.choices.priority) == (0.0, 1.0)
     assert run.beside.pushes == session.pushes
+    trace = load_trace(io.BytesIO(made("trace", playback.taken(recording=True))), "trace.npz")
+    assert np.array_equal(trace.columns["com"], playback.session.recording.column("com"))
+    assert trace.second.keys() == trace.columns.keys()
+    assert np.array_equal(trace.second["com"], session.recording.column("com"))
+    assert run_of_trace(trace) == run.run
 
 
 def test_a_second_that_came_later_is_taken_with_all_that_was_chosen_before():
