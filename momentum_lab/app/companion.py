@@ -45,7 +45,9 @@ class Companion:
     @classmethod
     def of(cls, first: Session, beside: Beside) -> Companion:
         """One that begins where the first session is now."""
-        return cls(fork(first, first.recording.capacity), beside, first.time)
+        session = fork(first, first.recording.capacity)
+        session.solver_failures = 0  # those before were the first one's
+        return cls(session, beside, first.time)
 
     def take(self, event: SessionEvent) -> None:
         """Do what the first robot is told to do, unless something else has been chosen for this one."""
