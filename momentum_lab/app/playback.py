@@ -177,7 +177,9 @@ class Playback:
         if self.beside is None:
             return recorded
         other = recorded_of(self.beside.session, self.beside.waiting, None)
-        return msgspec.structs.replace(recorded, other=other)
+        return msgspec.structs.replace(
+            recorded, other=msgspec.structs.replace(other, since=self.beside.since)
+        )
 
     @property
     def _difference(self) -> Beside | None:
