@@ -1,7 +1,7 @@
-"""What is typed arrives before what is pressed after it, and the lab's keys are heard in boxes of numbers, too.
+"""What is typed arrives before what is pressed after it; what is typed into a box is none of the lab's keys.
 
 Viser tells of a change at most every 50 ms, and only of the last one: a button that is pressed right after a number
-has been typed would take its place. A box of a number takes no letters, but keeps them from being keys.
+has been typed would take its place. Enter leaves a box of a number, so that the next letter is a key again.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ _TYPED = (
     "on('submit',e=>hold(e,()=>e.target.requestSubmit()));"
     # W, A, S, D, Q and E move the camera for as long as they are down, and are none of the lab's keys.
     "on('keydown',e=>{if(e.target.matches?.('[role=slider]'))note();"
-    "const inside=e.target.matches?.(box);"
+    "if(e.key==='Enter'&&e.target.matches?.(box))e.target.blur();"
     "if(!e.isTrusted||e.ctrlKey||e.metaKey||e.altKey||!/^[a-z]$/i.test(e.key)||/^[wasdqe]$/i.test(e.key))return;"
-    "if(!inside&&(!left()||e.target.matches?.('input,textarea,select')))return;"
+    "if(!left()||e.target.matches?.('input,textarea,select'))return;"
     "const key={key:e.key,code:e.code,shiftKey:e.shiftKey,bubbles:true};stop(e);"
     "setTimeout(()=>document.body.dispatchEvent(new KeyboardEvent('keydown',key)),left())})"
     "})()"

@@ -148,8 +148,20 @@ def test_paused_at_the_moment_that_teaches(served: Served, open_page: Opener) ->
     lab.click("everything")
     lab.picture_with(lambda now: differing(now, minimal) > 0.002, "no marks")
     assert lab.time == pytest.approx(paused + 3e-3, abs=1e-9)
+    type_letters_into_a_box(lab)
     lab.press("h")
     lab.expect_text("How this lab works")
+
+
+def type_letters_into_a_box(lab: LabPage) -> None:
+    """Letters in a box of a number are no keys; after Enter they are: the last one plays what is paused, only that."""
+    lab.open_tab("1", "Push")
+    lab.page.get_by_label("force (N), typed", exact=True).first.focus()
+    lab.press("Control+a", *"hnank", "Enter")
+    lab.page.wait_for_timeout(REPEATED)
+    lab.press("k")
+    lab.page.locator("[data-time]").filter(has_text="real time").wait_for(timeout=PATIENCE)
+    lab.expect_gone("How this lab works")
 
 
 def test_look_back_and_go_on_from_there(served: Served, open_page: Opener) -> None:
