@@ -1,4 +1,4 @@
-"""Labels in the scene: names and numbers beside marks; marks at the same place share one label."""
+"""Labels in the scene: names and numbers beside marks; marks near each other share one label."""
 
 from __future__ import annotations
 
@@ -43,7 +43,8 @@ class Label:
 def arrange(marks: list[Mark], size: float) -> list[Label]:
     """Labels for some marks.
 
-    Points on the ground that coincide share one label, "CoP ≈ CMP": that they coincide is worth reading.
+    Points on the ground that are near each other share one label, "CoP · CMP": two would cover each other. It is no
+    claim that they are the same: a small gap is a lever, too, and the bar between them says how much it turns.
 
     Args:
         marks: what is drawn.
@@ -53,7 +54,7 @@ def arrange(marks: list[Mark], size: float) -> list[Label]:
     labels = []
     for group in _groups([present[key] for key in _POINTS if key in present], _TOGETHER * size):
         style = STYLES[group[0].key]
-        text = " ≈ ".join(STYLES[mark.key].label for mark in group)
+        text = " · ".join(STYLES[mark.key].label for mark in group)
         labels.append(Label(style.key, text, group[0].points[0], style.anchor))
     for key, words in _OTHERS.items():
         if key in present and (mark := present[key]):

@@ -12,8 +12,8 @@ def texts(marks: list[Mark]) -> list[str]:
     return [label.text for label in arrange(marks, size=1.0)]
 
 
-def test_points_that_coincide_share_a_label():
-    assert texts([Mark("cmp", (NEAR,)), Mark("cop", (HERE,))]) == ["CoP ≈ CMP"]
+def test_points_near_each_other_share_a_label_that_claims_no_equality():
+    assert texts([Mark("cmp", (NEAR,)), Mark("cop", (HERE,))]) == ["CoP · CMP"]
 
 
 def test_points_apart_have_labels_of_their_own():
@@ -50,4 +50,4 @@ def test_a_standing_robot_has_one_label_on_the_ground(standing, talos):
     labels = arrange(overlays(standing, Picture(talos)), size=0.88)
     on_ground = [label for label in labels if label.key in {"cop", "cmp", "com_ground", "cop_desired"}]
     assert len(on_ground) == 1
-    assert on_ground[0].text.startswith("CoP ≈ CMP ≈ CoM on ground")
+    assert on_ground[0].text.startswith("CoP · CMP · CoM on ground")
