@@ -2,6 +2,18 @@
 
 from __future__ import annotations
 
+from html import escape
+
+from momentum_lab.app.viser_page import AROUND_DIALOG
+
+_OUTSIDE = (
+    "(()=>{if(window.labOutside)return;window.labOutside=true;"
+    f"window.addEventListener('click',e=>{{if(e.target.matches?.('{AROUND_DIALOG}'))"
+    "document.body.dispatchEvent(new KeyboardEvent('keydown',{key:'Escape',code:'Escape',bubbles:true}))},true)})()"
+)
+CLOSE_OUTSIDE = f'<img alt="" src="data:," style="display:none" onerror="{escape(_OUTSIDE)}">'
+"""Once in a page: a click beside the help is its key to close it."""
+
 HELP = """
 | key | |
 |---|---|
@@ -18,7 +30,7 @@ HELP = """
 | **C** | a dark page, or a light one |
 | **I** · **U** | next step · previous step of a lesson (*Learn* tab, left) |
 | **X** | end the demonstration; so does any touch |
-| **H** | this help |
+| **H** · **Esc** | this help · close it |
 
 All of them, and more, are in the list that Ctrl+K opens. Space and arrows stay with the widgets.
 
@@ -29,7 +41,8 @@ Control tab decides. At 0, too, computed-torque puts angular momentum first when
 the capture point is safe.
 
 The line from the CoM to the **CMP** (▲) is parallel to the ground reaction force. The bar from CoP to CMP is the
-lever with which that force turns the body: the longer it is, the faster angular momentum changes.
+lever with which that force turns the body: the longer it is, the faster angular momentum changes. Names in one label
+(*CoP · CMP*) are of marks near each other, not at the same place: the bar says how far apart they are.
 
 Drag to turn the picture, right-drag to move it, scroll to come closer. **Shift + drag** on the robot pulls it
 there: the arrow shows the force, letting go pushes (*pulse*) or ends the push (*hold*, in the Push tab). Go back to

@@ -12,7 +12,7 @@ import viser
 from momentum_lab.app.appearance import Appearance
 from momentum_lab.app.hand import Hand
 from momentum_lab.app.hand_panel import MODIFIER
-from momentum_lab.app.help_page import HELP
+from momentum_lab.app.help_page import CLOSE_OUTSIDE, HELP
 from momentum_lab.app.push_panel import PushPanel
 from momentum_lab.app.runs_panel import RunsPanel
 from momentum_lab.app.status_bar import LARGE_STEP, SMALL_STEP, StatusBar
@@ -36,13 +36,15 @@ def add_keys(
     colours: Appearance,
 ) -> None:
     """Give a browser tab its keys; all of them are in the command palette too."""
+    dialog = _Help(client)
     keys: tuple[tuple[str, Any, Callable[[], None]], ...] = (
         ("Push", "P", push_now),
         ("Stand up again", "R", lambda: post(Reset())),
         ("Play or pause", "K", status.toggle),
         ("What would this push do?", "F", push.ask),
         ("Repeat the last push", None, push.apply_again),
-        ("Help", "H", _Help(client).toggle),
+        ("Help", "H", dialog.toggle),
+        ("Close the help", "escape", dialog.close),
         ("Step 1 ms", "J", lambda: post(StepOnce(SMALL_STEP))),
         ("Step 20 ms", "L", lambda: post(StepOnce(LARGE_STEP))),
         ("Go on from the instant that is looked at", "B", lambda: post(Branch())),
@@ -88,11 +90,17 @@ class _Help:
     def toggle(self) -> None:
         """Open it, or close it: viser's own dialogs close by a button only, which a long page would hide below."""
         if self._modal is not None:
-            self._modal.close()
-            self._modal = None
+            self.close()
             return
         self._modal = self._gui.add_modal("How this lab works")
         with self._modal:
-            close = self._gui.add_button("Close  (H)", color="gray")
+            close = self._gui.add_button("Close  (Esc)", color="gray")
             self._gui.add_markdown(HELP)
-        close.on_click(lambda _: self.toggle())
+            self._gui.add_html(CLOSE_OUTSIDE)
+        close.on_click(lambda _: self.close())
+
+    def close(self) -> None:
+        """Close it; nothing happens if it is not open."""
+        if self._modal is not None:
+            self._modal.close()
+            self._modal = None

@@ -74,7 +74,7 @@ def test_no_key_is_used_twice_and_none_that_widgets_need(desk):
     hotkeys = [hotkey for hotkey, _ in desk.commands.values() if hotkey]
     assert len(set(hotkeys)) == len(hotkeys)
     assert not set(hotkeys) & set("WASDQE")
-    assert set(hotkeys) == {*"PKJLRB12345FMNGHTZC", "shiftZ"}
+    assert set(hotkeys) == {*"PKJLRB12345FMNGHTZC", "shiftZ", "escape"}
 
 
 def test_a_key_that_is_held_down_acts_once(desk, monkeypatch):
@@ -105,6 +105,10 @@ def test_help_opens_once_and_its_key_closes_it(monkeypatch):
     for shown in (True, False, True):
         press(None)
         assert [not modal.removed for modal in opened][-1] == shown
-    desk.client.gui.widgets["Close  (H)"].set_by_person(True)
+    desk.client.gui.widgets["Close  (Esc)"].set_by_person(True)
+    desk.press("escape")  # there is nothing to close, and nothing opens
     assert all(modal.removed for modal in opened)
-    assert len(opened) == 2
+    press(None)
+    desk.press("escape")
+    assert all(modal.removed for modal in opened)
+    assert len(opened) == 3

@@ -151,6 +151,8 @@ def test_paused_at_the_moment_that_teaches(served: Served, open_page: Opener) ->
     type_letters_into_a_box(lab)
     lab.press("h")
     lab.expect_text("How this lab works")
+    lab.press("Escape")
+    lab.expect_gone("How this lab works")
 
 
 def type_letters_into_a_box(lab: LabPage) -> None:
