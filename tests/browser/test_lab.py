@@ -156,7 +156,7 @@ def test_paused_at_the_moment_that_teaches(served: Served, open_page: Opener) ->
 
 
 def type_letters_into_a_box(lab: LabPage) -> None:
-    """Letters in a box of a number are no keys; after Enter they are: the last one plays what is paused, only that."""
+    """Letters in a box of a number are no keys; after Enter they are, and the last one only plays what is paused."""
     lab.open_tab("1", "Push")
     lab.page.get_by_label("force (N), typed", exact=True).first.focus()
     lab.press("Control+a", *"hnank", "Enter")
