@@ -11,6 +11,7 @@ import numpy as np
 import viser
 
 from momentum_lab.app import cursor, html
+from momentum_lab.app.fallen_curves import within_standing
 from momentum_lab.app.marks import STYLES
 from momentum_lab.app.second_curves import POINTS, curves_at
 from momentum_lab.app.series import WINDOW, Curves, History
@@ -181,13 +182,10 @@ class Plots:
         x = _window(curves.time)
         # A push that goes on would be filled from the last sample to the end of the window.
         pushed = _framed(np.append(curves.pushed[:-1], 0.0))
-        limits = [_held(_framed(limit)) for limit in curves.limits]
-        own = (
-            [*(_framed(curves.points[name]) for name in _POINTS), *limits],
-            [_framed(curves.linear[kind]) for kind in _KINDS],
-            [_framed(curves.angular[kind]) for kind in _KINDS],
-            [_framed(curves.momentum), _framed(curves.angular_momentum)],
-        )
+        lines = _lines(curves)
+        shown = [within_standing(lines[plot], curves.fallen, least) for plot, least in LEAST.items()]
+        own = [[_framed(curve) for curve in plot] for plot in shown]
+        own[0][-2:] = map(_held, own[0][-2:])
         kept = curves_at(self._kept, self._direction, curves.time + self.ahead)
         beside: list[list[np.ndarray]] = [[], [], [], []]
         if self._beside is not None:
@@ -201,15 +199,19 @@ def at_rest(curves: Curves) -> bool:
     """Whether all curves are level lines through the whole window, so that only the time in them changes."""
     if curves.time[-1] - curves.time[0] < WINDOW - _PERIOD:
         return False  # the lines still grow
-    lines = {
-        "places": [*curves.points.values(), *curves.limits],
-        "linear": list(curves.linear.values()),
-        "angular": list(curves.angular.values()),
+    return not curves.pushed.any() and all(
+        np.ptp(values) < _SAME * LEAST[plot] for plot, lines in _lines(curves).items() for values in lines
+    )
+
+
+def _lines(curves: Curves) -> dict[str, list[np.ndarray]]:
+    """The curves of each plot, the limits of the support last in the first one."""
+    return {
+        "places": [*(curves.points[name] for name in _POINTS), *curves.limits],
+        "linear": [curves.linear[kind] for kind in _KINDS],
+        "angular": [curves.angular[kind] for kind in _KINDS],
         "momenta": [curves.momentum, curves.angular_momentum],
     }
-    return not curves.pushed.any() and all(
-        np.ptp(values) < _SAME * LEAST[plot] for plot, ys in lines.items() for values in ys
-    )
 
 
 def _window(times: np.ndarray) -> np.ndarray:
