@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from html import escape
 
 from momentum_lab.app.marks import STYLES, MarkStyle
+from momentum_lab.app.speed_mark import speed_words
 from momentum_lab.app.steady import blanks, steady
 from momentum_lab.app.viser_page import DARK_PAGE, PHONE, SHEET
 
@@ -39,6 +40,8 @@ TITLE = (
 # A whole number of N or N m, and a place for three of its figures: the usual losses.
 _SIZE = re.compile(r"\b(\d+)(?= N\b)")
 _THREE_FIGURES = "display:inline-block;min-width:3ch;text-align:right"
+# There is more to read under a mouse.
+_ASK = "cursor:help;text-decoration:underline dotted"
 _DASHED = ' stroke-dasharray="4 2.5"'
 BIG_NEXT = '<span class="lab-big"></span>'
 
@@ -70,20 +73,25 @@ def time_line(
     behind: float = 0.0,
 ) -> str:
     """Simulated time and how it runs, in figures that do not change their width."""
-    asked = "" if speed == 1.0 else f" · speed {speed:g}"
     pace = f"{steady(real_time_factor, 2, 1)} × real time" if playing else "paused"
     if behind:
         pace = f"{steady(behind, 2, 2)} s before the end"
     clock = f"{blanks(time, 2, 3)}<b>{time:.2f} s</b>"
     # The longer line has to fit where the shorter one does: what is around it keeps its place.
     small = " small" if behind else ""
-    told = f"simulated time {clock} · {pace}{asked}{_failures(failures)}"
+    told = f"simulated time {clock} · {pace}{speed_words(speed)}{_failures(failures)}"
     return f'<div class="lab{small} n dim" data-time="{time:.3f}">{told}</div>'
 
 
 def _failures(count: int) -> str:
-    words = f"solver failed {count} ×"
-    return f' · <b style="color:{COLORS["vermillion"]}">{words}</b>' if count else ""
+    """How often the controller had no answer: a word of it here, what it means in a hint."""
+    if not count:
+        return ""
+    meaning = (
+        f"In {count} time steps since the robot stood up the controller's solver had no answer, and the joints were "
+        "held by a fallback torque instead: usual while a robot falls, a thing to look at while it stands."
+    )
+    return f' · <span title="{escape(meaning)}" style="{_ASK}">{count} steps unsolved</span>'
 
 
 def slider_ends(low: str, high: str) -> str:

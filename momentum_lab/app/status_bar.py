@@ -11,6 +11,7 @@ import viser
 from momentum_lab.app import html
 from momentum_lab.app.push_strip import PushStrip
 from momentum_lab.app.series import KEPT
+from momentum_lab.app.speed_mark import speed_cell
 from momentum_lab.app.time_bar import cell
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
@@ -68,7 +69,7 @@ class StatusBar:
         )
         gui.add_html(cell("buttons"))
         self._buttons = gui.add_button_group("time", _buttons(playing=True))
-        gui.add_html(cell("speed"))
+        self._speed = gui.add_html(speed_cell(_SPEEDS.values(), 1.0))
         speeds = gui.add_button_group("speed", tuple(_SPEEDS))
         gui.add_html(cell("strip"))
         self._strip = PushStrip(gui, _LOOK_BACK, clock)
@@ -119,6 +120,7 @@ class StatusBar:
         self._look_back.follow(-truth.behind)
         self._branch.visible = truth.behind > 0.0
         self._warn(truth.forgotten)
+        self._write("speed", self._speed, speed_cell(_SPEEDS.values(), truth.speed))
         self._strip.follow([end - start for start in truth.pushed], reach, truth.playing)
         now = self._clock()
         if now < self._next and truth.playing:
