@@ -10,6 +10,7 @@ import numpy as np
 import viser
 
 from momentum_lab.app.hand_scene import HandScene
+from momentum_lab.app.hand_words import HOLD, PULSE
 from momentum_lab.app.held import Held
 from momentum_lab.app.inbox import MOST_PUSHES
 from momentum_lab.app.pull import Drag, Grip, Scale, WayBack, grip
@@ -154,7 +155,7 @@ class Pulling:
             self._remember(pull.grip)
         elif not pull.holds and force.any():
             push = pull.grip.pulse(force, self._duration())
-            self._panel.show(push)
+            self._panel.show_hand(push, PULSE)
             self._panel.give(push)
 
     def drop(self) -> None:
@@ -192,7 +193,7 @@ class Pulling:
         held = Held.last_of(self._pushes(), taken)
         if held is not None:
             before = self._duration()
-            self._panel.show(held.mean)
+            self._panel.show_hand(held.mean, HOLD)
             self._durations = (self._panel.form.duration, before)
             pieces = held.from_now(MOST_PUSHES)
             self._panel.can_repeat(ApplyPushes(pieces), _coarser(len(held.pieces), len(pieces)))

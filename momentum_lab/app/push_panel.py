@@ -9,6 +9,7 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.hand_panel import HandPanel
+from momentum_lab.app.hand_words import HandsPush
 from momentum_lab.app.push_form import PushForm
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.steady import blanks, steady
@@ -24,6 +25,10 @@ from momentum_lab.recording import Sample
 
 # Slower than this the robot stands still, and its support is what the next push will meet, m/s.
 _STILL = 0.02
+_BOUND = (
+    "Counted from where the robot last stood still, in the direction of the push: the nearer its CoM is to the edge "
+    "of the support there, the less can be caught."
+)
 
 
 class PushPanel:
@@ -54,6 +59,7 @@ class PushPanel:
         self._robot: LoadedRobot | None = None
         self._still: Sample | None = None
         self._size_text = ""
+        self._by_hand: HandsPush | None = None
         gui.add_html(html.BIG_NEXT)
         self.button = gui.add_button("Push  (P)", color=VERMILLION, icon=viser.Icon.HAND_MOVE)
         ask = gui.add_button(
@@ -72,7 +78,7 @@ class PushPanel:
 
     def set_robot(self, robot: LoadedRobot) -> None:
         """Fit ranges and bodies to a robot."""
-        self._robot, self._still, self._last = robot, None, None
+        self._robot, self._still, self._last, self._by_hand = robot, None, None, None
         self.form.set_robot(robot)
 
     def see(self, sample: Sample) -> None:
@@ -83,7 +89,8 @@ class PushPanel:
     def refresh(self) -> None:
         """Write the size of the push that the button would give."""
         try:
-            text = self._describe(self.push())
+            push = self.push()
+            text = self._describe(push) + self._said_of_hand(push)
         except InputError as error:
             text = html.sentence(str(error))
         if text != self._size_text:
@@ -99,7 +106,13 @@ class PushPanel:
 
     def show(self, push: Push) -> None:
         """Let the widgets describe a push."""
+        self._by_hand = None
         self.form.show(push)
+
+    def show_hand(self, push: Push, lead: str) -> None:
+        """Let the widgets describe what a hand has done, and say so with some words for as long as they do."""
+        self.form.show(push)
+        self._by_hand = HandsPush(self.push(), lead)
 
     def apply(self) -> None:
         """Push."""
@@ -133,6 +146,10 @@ class PushPanel:
         """Take note of what was given last, and of what to tell whoever repeats it if it was finer."""
         self._last, self._coarser = last, coarser
 
+    def _said_of_hand(self, push: Push) -> str:
+        words = "" if self._by_hand is None else self._by_hand.words(push)
+        return html.sentence(words) if words else ""
+
     def _describe(self, push: Push) -> str:
         """Impulse, and what part of it the CoP alone could catch."""
         words = f"{blanks(push.impulse, 1, 2)}<b>{push.impulse:.1f} N s</b>"
@@ -140,7 +157,8 @@ class PushPanel:
         if bound > 0.0:
             words += (
                 f" = <b>{push.horizontal_part * push.impulse / bound:.2f}</b> of the pendulum bound "
-                f'<span class="dim">({steady(bound, 1, 2)} N s: all that moving the CoP alone can catch)</span>'
+                f'<span class="dim" title="{_BOUND}">({steady(bound, 1, 2)} N s: all that moving the CoP alone '
+                "can catch)</span>"
             )
         return f'<div class="lab n">{words}</div>'
 

@@ -73,6 +73,11 @@ class Desk:
         self.client.gui.widgets[label].set_by_person(value)
 
     @property
+    def size(self) -> str:
+        """What the panel says about the push that its widgets describe."""
+        return self.client.gui.html[1].content
+
+    @property
     def label(self):
         return self.client.scene.nodes["/hand/label"]
 
@@ -107,10 +112,15 @@ def test_the_panel_shows_the_push_and_gives_it_again(desk):
     (event,) = desk.posted
     assert event.push.duration == 0.25
     assert desk.panel.push() == event.push
+    desk.panel.refresh()
+    force = f"{event.push.force:.0f} N"
+    assert f"P repeats what your hand did: {force} for 250 ms on the trunk, direction -45°." in desk.size
     desk.panel.apply_again()
     desk.panel.apply()
     assert desk.posted == [event] * 3
     desk.set("force (N)", 50.0)  # it can be edited, too
+    desk.panel.refresh()
+    assert "your hand" not in desk.size
     desk.panel.apply()
     assert desk.posted[-1] == ApplyPush(msgspec.structs.replace(event.push, force=50.0))
 
