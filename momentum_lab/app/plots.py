@@ -11,7 +11,7 @@ import numpy as np
 import viser
 
 from momentum_lab.app import cursor, html
-from momentum_lab.app.fallen_curves import within_standing
+from momentum_lab.app.fallen_curves import is_down, within_standing
 from momentum_lab.app.marks import STYLES
 from momentum_lab.app.second_curves import POINTS, curves_at
 from momentum_lab.app.series import WINDOW, Curves, History
@@ -182,8 +182,8 @@ class Plots:
         x = _window(curves.time)
         # A push that goes on would be filled from the last sample to the end of the window.
         pushed = _framed(np.append(curves.pushed[:-1], 0.0))
-        lines = _lines(curves)
-        shown = [within_standing(lines[plot], curves.fallen, least) for plot, least in LEAST.items()]
+        lines, down = _lines(curves), is_down(curves.time, curves.fallen)
+        shown = [within_standing(lines[plot], down, least) for plot, least in LEAST.items()]
         own = [[_framed(curve) for curve in plot] for plot in shown]
         own[0][-2:] = map(_held, own[0][-2:])
         kept = curves_at(self._kept, self._direction, curves.time + self.ahead)

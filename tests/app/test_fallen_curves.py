@@ -5,10 +5,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.testing import assert_array_equal
 
-from momentum_lab.app.fallen_curves import within_standing
+from momentum_lab.app.fallen_curves import FALLING, is_down, within_standing
 
 NAN = np.nan
 STANDING, FALLEN = np.zeros(4, dtype=bool), np.array([False, False, True, True])
+
+
+def test_a_robot_is_down_from_shortly_before_its_fall_is_told():
+    times = 1.0 + FALLING * np.array([0.0, 0.5, 1.0, 1.5])
+    assert_array_equal(is_down(times, times > 1.0 + 1.4 * FALLING), [False, False, True, True])
+    assert_array_equal(is_down(times, FALLEN), [False, True, True, True])
+    assert is_down(times, ~STANDING).all()
+    assert not is_down(times, STANDING).any()
 
 
 def test_a_robot_that_stands_is_shown_as_it_is():
