@@ -78,7 +78,7 @@ def time_line(
         pace = f"{steady(behind, 2, 2)} s before the end"
     clock = f"{blanks(time, 2, 3)}<b>{time:.2f} s</b>"
     # The longer line has to fit where the shorter one does: what is around it keeps its place.
-    small = " small" if behind else ""
+    small = " small" if behind or failures or speed != 1.0 else ""
     told = f"simulated time {clock} · {pace}{speed_words(speed)}{_failures(failures)}"
     return f'<div class="lab{small} n dim" data-time="{time:.3f}">{told}</div>'
 

@@ -24,4 +24,4 @@ def speed_words(speed: float) -> str:
         return ""
     inverse = round(1.0 / speed) if speed > 0.0 else 0
     named = f"1/{inverse}" if inverse and speed * inverse == 1.0 else f"{speed:g} ×"
-    return f" · at {named} speed"
+    return f" · {named} speed"
