@@ -7,7 +7,7 @@ import viser
 
 from momentum_lab.app.differences import differences, names_of, with_choices
 from momentum_lab.app.foresight import SECONDS
-from momentum_lab.app.foresight_scene import ForesightScene
+from momentum_lab.app.foresight_scene import PATHS, ForesightScene
 from momentum_lab.app.ghost import Ghost, KeptRun
 from momentum_lab.app.plots import Plots
 from momentum_lab.app.robot_scene import RobotScene
@@ -124,6 +124,11 @@ class Comparison:
             self._ghost.show(panel.shows_ghost)
         if panel.is_time():
             self._compare(panel)
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Keys of the marks whose paths are drawn."""
+        return PATHS if self._paths else ()
 
     def tried(self, foreseeing: float | None) -> str:
         """What is known of a push that is only tried, in a sentence; empty without one.

@@ -17,6 +17,9 @@ _THICKNESS, _RAISED = 0.008, 0.010
 # How far above the furthest CoM the words are, in CoM heights: next to it is the name of the CoM itself.
 _LABEL_ABOVE = 0.12
 
+PATHS = ("com", "com_ground", "capture")
+"""The marks whose paths are drawn."""
+
 
 class ForesightScene:
     """The paths of one robot in one browser tab.
@@ -38,16 +41,12 @@ class ForesightScene:
         com, capture = rows[:, at["com"]], rows[:, at["capture_point"]]
         ground = float(rows[0, at["sole_pose"]].reshape(-1, 7)[:, 2].min()) + _RAISED
         below = np.full(len(rows), ground)
-        paths = {
-            "com": com,
-            "com_ground": np.column_stack([com[:, :2], below]),
-            "capture": np.column_stack([capture, below]),
-        }
+        paths = (com, np.column_stack([com[:, :2], below]), np.column_stack([capture, below]))
         self._handles: list[Any] = [
             client.scene.add_line_segments(
                 f"{root}/foreseen/{key}", dashes(path), STYLES[key].color, thickness=_THICKNESS
             )
-            for key, path in paths.items()
+            for key, path in zip(PATHS, paths, strict=True)
         ]
         way = np.linalg.norm(com[:, :2] - com[0, :2], axis=1)
         furthest = com[int(np.nanargmax(way))] + np.array([0.0, 0.0, _LABEL_ABOVE * com[0, 2]])

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import viser
 
-from momentum_lab.app import access_html, html, keyboard_html, look_html, share_html, typed_html
+from momentum_lab.app import access_html, keyboard_html, look_html, share_html, typed_html
 from momentum_lab.app.appearance import Appearance, dress
 from momentum_lab.app.control_panel import Choices, ControlPanel
 from momentum_lab.app.demo_panel import DemoPanel
@@ -18,9 +18,10 @@ from momentum_lab.app.hand import Hand
 from momentum_lab.app.keys import add_keys
 from momentum_lab.app.learn_panel import LearnPanel
 from momentum_lab.app.learn_style import ON_A_PHONE
+from momentum_lab.app.legend import Legend
 from momentum_lab.app.lesson_wire import LessonEvent
 from momentum_lab.app.library import Library
-from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS, PRESETS, START_PRESET, STYLES
+from momentum_lab.app.marks import ALL_LABELS, FEW_LABELS
 from momentum_lab.app.mismatch_panel import MismatchPanel
 from momentum_lab.app.page_plan import LEFT, RIGHT, PagePlan
 from momentum_lab.app.plots import Plots
@@ -113,6 +114,7 @@ class Panels:
         gui.add_html(access_html.NAMES + typed_html.TYPED + look_html.STYLE + ON_A_PHONE)
         gui.add_html(keyboard_html.KEYS)
         gui.add_html(share_html.READ_ADDRESS)  # last: by now somebody listens to the address
+        self.legend = Legend()
         self._lesson_plots: tuple[viser.GuiFormHandle, Plots] | None = None
         self._robot: LoadedRobot | None = None
         learn_tab = self._add_left(gui, plan, lesson, demo)
@@ -137,7 +139,7 @@ class Panels:
         ]
         learn_tab, plots_tab = tabs if learn_first else tabs[::-1]
         with plots_tab:
-            gui.add_html(_legend())
+            self.legend.add(gui)
             self.plots = self._usual_plots = Plots(gui)
             demo.add_caption()
         left.dock_left()
@@ -166,7 +168,7 @@ class Panels:
     def _add_lesson_plots(self) -> tuple[viser.GuiFormHandle, Plots]:
         box = self._gui.add_form(None, visible=False)
         with box:
-            self._gui.add_html(_legend())
+            self.legend.add(self._gui)
             plots = Plots(self._gui)
         if self._robot is not None:
             plots.begin(self._robot.model, self._robot.layout)
@@ -176,7 +178,3 @@ class Panels:
         """Push as the lesson says, or as the push tab does."""
         if not self.learn.push():
             self.push.apply()
-
-
-def _legend() -> str:
-    return html.legend([key for key in STYLES if key in PRESETS[START_PRESET]], explained=False)

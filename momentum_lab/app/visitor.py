@@ -291,6 +291,7 @@ class Visitor:
             panels.plots.along(truth.push.along)
         panels.plots.add(rows_of(frame.history, loaded.layout.width))
         self._comparison.after(frame, sample, panels.runs, panels.plots)
+        panels.legend.show(panels.settings.shown, self._comparison.paths)
         tried = self._comparison.tried(frame.foreseeing)
         panels.status.follow(truth, told(frame, sample, loaded), sample.number("time"), tried)
         panels.plots.look_at(sample.number("time") if truth.behind else math.inf)
