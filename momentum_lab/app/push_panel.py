@@ -23,11 +23,11 @@ from momentum_lab.palette import VERMILLION
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
 
-# Slower than this the robot stands still, and its support is what the next push will meet, m/s.
+# Slower than this, which the hint below says, the robot stands still, and its support is what the next push will meet, m/s.
 _STILL = 0.02
 _BOUND = (
-    "Counted from where the robot last stood still, in the direction of the push: the nearer its CoM is to the edge "
-    "of the support there, the less can be caught."
+    "Counted from where the robot was when its CoM was last slower than 2 cm/s, in the direction of the push: "
+    "the nearer it was to the edge of the support, the less can be caught."
 )
 
 

@@ -23,5 +23,5 @@ def speed_words(speed: float) -> str:
     if speed == 1.0:
         return ""
     inverse = round(1.0 / speed) if speed > 0.0 else 0
-    named = f"1/{inverse}" if inverse and speed * inverse == 1.0 else f"{speed:g} ×"
-    return f" · {named} speed"
+    named = f"1/{inverse}" if inverse and speed * inverse == 1.0 else f"{speed:g}"
+    return f" · at {named}"

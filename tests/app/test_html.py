@@ -32,7 +32,7 @@ def test_time_line():
     assert "simulated time \u2007\u2007<b>1.23 s</b> · 1.00 × real time<" in running
     slow = html.time_line(1.0, 0.25, 0.25, playing=True)
     assert 'data-time="1.234"' in running  # to the millisecond, for programs that read the page
-    assert "0.25 × real time · 1/4 speed" in slow
+    assert "0.25 × real time · at 1/4" in slow
     failed = html.time_line(1.0, 1.0, 1.0, playing=True, failures=3)
     assert ">3 steps unsolved<" in failed
     assert html.COLORS["vermillion"] not in failed  # a lecture is no alarm: the status says what matters

@@ -13,10 +13,10 @@ SPEEDS = (0.125, 0.25, 0.5, 1.0)
     ("speed", "words"),
     [
         (1.0, ""),
-        (0.5, " · 1/2 speed"),
-        (0.125, " · 1/8 speed"),
-        (0.3, " · 0.3 × speed"),
-        (2.0, " · 2 × speed"),
+        (0.5, " · at 1/2"),
+        (0.125, " · at 1/8"),
+        (0.3, " · at 0.3"),
+        (2.0, " · at 2"),
     ],
 )
 def test_the_words_are_those_of_the_button(speed, words):
