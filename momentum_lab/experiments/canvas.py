@@ -66,10 +66,10 @@ def legend_below(picture: Any, axes: Any) -> None:
     picture.legend(named.values(), named.keys(), loc="outside lower center", ncols=len(named), fontsize=9)
 
 
-def heading(title: str, session: Session | FinishedRun) -> str:
-    """The title of a picture with the robot and the push it got."""
+def heading(title: str, session: Session | FinishedRun, without: str = "no push") -> str:
+    """The title of a picture with the robot and the push it got, or some words if it got none."""
     pushes = "; ".join(f"{push.force:.0f} N for {push.duration:g} s" for push in session.pushes)
-    return f"{title}\n{session.robot.spec.title}, {pushes or 'no push'}"
+    return f"{title}\n{session.robot.spec.title}, {pushes or without}"
 
 
 def _drawn(lines: Sequence[Any]) -> np.ndarray:
