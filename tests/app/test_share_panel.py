@@ -9,8 +9,11 @@ from types import SimpleNamespace
 
 import pytest
 
+from momentum_lab.app.exporter import finished
 from momentum_lab.app.kept_before import WAY_BACK
 from momentum_lab.app.playback import Playback
+from momentum_lab.app.reel import Reel
+from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.share_panel import SharePanel, Sharing, file_name, opened_words
 from momentum_lab.app.wire import Opened, RunTaken
 from momentum_lab.events import ApplyPush, Pause, SetPriority
@@ -28,7 +31,7 @@ class Desk:
         self.gui, self.told, self.opened, self.sent = FakeGui(), [], [], {}
         self.playback = Playback(Scenario("My run!", robot="g1"))
         self.address = FakeHandle(value="")
-        self.lines, self.stops = [], False
+        self.begun, self.lines, self.stops = [], [], False
         self.said, self.warned, self.taken_back = [], [], []
         sharing = Sharing(
             self.playback.taken,
@@ -37,6 +40,7 @@ class Desk:
             self.told.append,
             lambda name, content: self.sent.update({name: content}),
             lambda: b"picture",
+            self.reel,
             self.film,
             URL,
             lambda: self.taken_back.append(True),
@@ -45,7 +49,12 @@ class Desk:
         )
         self.panel = SharePanel(self.gui, sharing, self.address, clock=itertools.count(0.0, 10.0).__next__)
 
-    def film(self, taken: RunTaken, height: int, report: Callable[[float], None]) -> bytes:
+    def reel(self, taken: RunTaken) -> Reel:
+        run = finished(taken)
+        return Reel.of(run, LoadedRobot(run.robot, (), run.recording.layout))
+
+    def film(self, reel: Reel, height: int, report: Callable[[float], None]) -> bytes:
+        self.begun.append(self.gui.html[-1].content)
         for done in (0.25, 0.5, 1.0):
             report(done)
             self.lines.append(self.gui.html[-1].content)
@@ -176,7 +185,26 @@ def test_a_film_says_how_far_it_is(desk, what, height):
     assert not desk.gui.widgets["Stop the film"].visible
 
 
+def test_before_a_film_begins_it_says_from_when_to_when_it_is_and_how_long_it_takes(desk):
+    desk.playback.take(ApplyPush(Push(force=20.0)))
+    desk.playback.tick(290)  # a picture each 40 ms: 0, 40, ..., 280
+    desk.gui.widgets["file"].value = "film (.mp4)"
+    desk.do("Download")
+    desk.do("Download")
+    assert all("film from 0.0 s to 0.3 s of the run" in line for line in (*desk.begun, *desk.lines))
+    assert "8 pictures, the first picture tells how long it takes" in desk.begun[0]
+    assert "8 pictures, about 30 s" in desk.begun[1]  # what the first film took
+
+
+def test_a_film_without_a_push_says_so(desk):
+    desk.playback.tick(5)
+    desk.gui.widgets["file"].value = "small film (.mp4)"
+    desk.do("Download")
+    assert "in which there was no push" in desk.begun[0]
+
+
 def test_a_film_can_be_stopped_and_taken_again(desk):
+    desk.playback.tick(5)
     desk.stops = True
     desk.gui.widgets["file"].value = "film (.mp4)"
     desk.do("Download")
