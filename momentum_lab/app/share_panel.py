@@ -18,6 +18,7 @@ from momentum_lab.app.kept_before import KeptBefore
 from momentum_lab.app.reel import Reel
 from momentum_lab.app.wire import Opened, RunTaken, Truth
 from momentum_lab.errors import LabError
+from momentum_lab.experiments.run_table import thinned_words
 from momentum_lab.run_file import Run, decoded, encoded
 from momentum_lab.share_code import from_code, link, to_code
 
@@ -175,15 +176,17 @@ class SharePanel:
 
     def _save(self) -> None:
         kind, end = _FILES[self._what.value]
-        self._download.disabled = True
+        self._download.disabled, note = True, ""
         try:
             self._show(f"{self._what.value}: being made, the run goes on.")
             take = self._sharing.take_run if kind in _WITHOUT_SAMPLES else self._sharing.take_recording
             taken = take()
-            self._sharing.send(file_name(taken.run) + end, self._content(kind, taken))
+            content = self._content(kind, taken)
+            self._sharing.send(file_name(taken.run) + end, content)
+            note = thinned_words(content, taken.run.scenario.timestep) if kind == "table" else ""
         finally:
             self._download.disabled = False
-            self._show("")
+            self._show(note)
 
     def _content(self, kind: str, taken: RunTaken) -> bytes:
         if kind == "view":
@@ -213,7 +216,7 @@ class SharePanel:
             self._stop.visible = False
 
     def _show(self, words: str) -> None:
-        """One line about a file that is being made; none without words."""
+        """One line about a file that is being made or was made last; none without words."""
         self._progress.content = html.sentence(words)
         self._progress.visible = bool(words)
 

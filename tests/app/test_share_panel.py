@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from momentum_lab.app import share_panel
 from momentum_lab.app.exporter import finished
 from momentum_lab.app.kept_before import WAY_BACK
 from momentum_lab.app.playback import Playback
@@ -169,6 +170,19 @@ def test_the_run_file_and_the_picture_are_sent(desk):
     assert list(desk.sent) == ["my-run-g1.json", "my-run-g1-view.png"]
     assert decoded("r.json", desk.sent["my-run-g1.json"]).ticks == 1
     assert not desk.gui.widgets["Download"].disabled
+
+
+def test_what_a_table_leaves_out_is_told_until_the_next_download(desk, monkeypatch):
+    thin = b"time [s],com/x [m]\r\n0,0\r\n0.006,0\r\n0.012,0\r\n"
+    monkeypatch.setattr(share_panel, "made_elsewhere", lambda kind, taken: thin)
+    desk.gui.widgets["file"].value = "table (.csv)"
+    desk.do("Download")
+    assert desk.sent == {"my-run-g1.csv": thin}
+    assert "one tick of 6, a row each 6 ms" in desk.gui.html[-1].content
+    assert desk.gui.html[-1].visible
+    desk.gui.widgets["file"].value = "run file (.json)"
+    desk.do("Download")
+    assert not desk.gui.html[-1].visible
 
 
 @pytest.mark.parametrize(("what", "height"), [("film (.mp4)", 720), ("small film (.mp4)", 360)])
