@@ -17,6 +17,7 @@ from momentum_lab.cli.choices import chosen_run
 from momentum_lab.cli.progress import interruptible, progress
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.headless import Timing, run_headless
+from momentum_lab.plain import plain
 from momentum_lab.provenance import provenance
 from momentum_lab.replay import Agreement, Script, end_agreement, prepared
 from momentum_lab.run_file import Run
@@ -172,7 +173,11 @@ def _timed(session: Session, cue: Callable[[Session], None], ticks: int) -> tupl
 
 
 def _lines(summary: Summary) -> list[tuple[str, str]]:
-    margin = "never supported" if summary.min_cop_margin is None else f"{1e3 * summary.min_cop_margin:.1f} mm"
+    margin = (
+        "never supported"
+        if summary.min_cop_margin is None
+        else f"{plain(1e3 * summary.min_cop_margin, '.1f')} mm"
+    )
     return [
         ("result", _result(summary)),
         ("push", _push(summary)),

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure as Picture
 from momentum_lab import palette
 from momentum_lab.finished import FinishedRun
 from momentum_lab.palette import css
+from momentum_lab.plain import plain
 from momentum_lab.session import Session
 
 # Each colour for the quantity that has it on the app's screen.
@@ -112,7 +113,7 @@ def cut_spikes(axes: Any, least: float = -math.inf, tumbling: Sequence[Any] = ()
     axes.text(
         0.99,
         0.03,
-        f"a sole lands: spikes from {lowest:.0f} to {highest:.0f} are cut",
+        f"a sole lands: spikes from {plain(lowest, '.0f')} to {plain(highest, '.0f')} are cut",
         transform=axes.transAxes,
         fontsize=7,
         color=MUTED,

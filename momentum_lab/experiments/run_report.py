@@ -21,6 +21,7 @@ from momentum_lab.experiments.run_plots import on_the_ground, over_time, png
 from momentum_lab.finished import FinishedRun
 from momentum_lab.headless import Timing
 from momentum_lab.physics.push import Push
+from momentum_lab.plain import plain
 from momentum_lab.provenance import versions
 from momentum_lab.share_code import to_code
 from momentum_lab.summary import Summary, summarize
@@ -163,7 +164,7 @@ def _figures(summary: Summary) -> list[tuple[str, str]]:
     margin = (
         "never supported"
         if summary.min_cop_margin is None
-        else f"{round(1e3 * summary.min_cop_margin, 1) + 0.0:g} mm"
+        else f"{plain(1e3 * summary.min_cop_margin, '.1f')} mm"
     )
     return [
         ("impulse of all pushes", f"{summary.impulse:.2f} N s"),
@@ -230,7 +231,7 @@ def _short(value: Any) -> str:
         return ", ".join(f"{key} {_short(inner)}" for key, inner in value.items() if inner is not None)
     if isinstance(value, list | tuple):
         return "; ".join(_short(inner) for inner in value)
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return plain(value, "g") if isinstance(value, float) else str(value)
 
 
 def _claims(claims: Iterable[Claim]) -> str:
