@@ -17,6 +17,7 @@ from momentum_lab.errors import InputError
 from momentum_lab.events import MoveGround, SessionEvent, SetFriction
 from momentum_lab.experiments.both import both, different
 from momentum_lab.experiments.claims import Claim, at_most
+from momentum_lab.experiments.outcome import outcome
 from momentum_lab.experiments.run_plots import on_the_ground, over_time, png
 from momentum_lab.finished import FinishedRun
 from momentum_lab.headless import Timing
@@ -64,7 +65,7 @@ def report(run: FinishedRun) -> bytes:
         f"<h1>{escape(title)}</h1>",
         f'<p class="dim">{escape(_setting(run))}</p>',
         *(
-            f'<p class="result">{escape(_of(name, _result(each, summary)))}</p>'
+            f'<p class="result">{escape(_of(name, outcome(each, summary)))}</p>'
             for name, each, summary in robots
         ),
         _section("Numbers", _numbers(robots)),
@@ -136,14 +137,6 @@ def _of(name: str, words: str) -> str:
 def _headed(words: str, name: str) -> str:
     """A heading about one of two robots."""
     return f"{words}: {name}" if name else words
-
-
-def _result(run: FinishedRun, summary: Summary) -> str:
-    if run.lay_there:
-        return "Had fallen already when it came"
-    if summary.fell and summary.fall_time is not None:
-        return f"Fell at {summary.fall_time:.2f} s: {summary.fall_reason}"
-    return f"Stands {'still' if summary.settled else 'and still moves'} after {summary.seconds:.2f} s"
 
 
 def _numbers(robots: Sequence[tuple[str, FinishedRun, Summary]]) -> str:

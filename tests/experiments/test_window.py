@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -13,15 +11,14 @@ from momentum_lab.experiments.window import Window, around_pushes, time_span, wi
 from momentum_lab.fall import Fall
 from momentum_lab.finished import FinishedRun
 from momentum_lab.physics.push import Push
-from momentum_lab.recording import Recording
 from momentum_lab.replay import replayed
 from momentum_lab.run_file import Run
 from momentum_lab.scenario import Scenario
 from momentum_lab.summary import SETTLED_SPEED
+from tests.experiments.lasting import STEP, lasting
 
 KEPT = Window(21.0, 81.0)
 EARLY, FIRST, SECOND = (Push(force=217.0, start=start, duration=0.1) for start in (12.8, 40.0, 44.0))
-STEP = 0.01
 
 
 @pytest.mark.parametrize(
@@ -59,19 +56,6 @@ def test_rest_is_when_the_last_movement_is_over():
 @pytest.fixture(scope="module")
 def short() -> FinishedRun:
     return FinishedRun.of(replayed(Run(Scenario("s", "Push", robot="g1"), (), ticks=2))[0])
-
-
-def lasting(run: FinishedRun, recorded: Window, *moving: Window, **changes: object) -> FinishedRun:
-    """A run whose only sample lasts, but for the times at which its CoM moves."""
-    times = np.arange(recorded.start, recorded.end + 0.5 * STEP, STEP)
-    recording = Recording(run.recording.layout, len(times))
-    for time in times:
-        row = recording.next_row()
-        row[:] = run.recording.rows()[0]
-        row[recording.slices["time"]] = time
-        moves = any(each.start <= time < each.end for each in moving)
-        row[recording.slices["com_velocity"]] = (0.3 if moves else 0.0, 0.0, 0.0)
-    return replace(run, recording=recording, time=recorded.end, **changes)
 
 
 def shown(run: FinishedRun) -> tuple[float, float]:
