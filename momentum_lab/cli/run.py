@@ -21,6 +21,7 @@ from momentum_lab.plain import plain
 from momentum_lab.provenance import provenance
 from momentum_lab.replay import Agreement, Script, end_agreement, prepared
 from momentum_lab.run_file import Run
+from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
 from momentum_lab.summary import Summary, summarize
 from momentum_lab.trace import save_trace, writable_file
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 Made = TypeVar("Made")
 _MOST_BOUNDS = 5
+_USUAL_ENGINE = Scenario("").engine
 
 
 def run(args: Namespace) -> int:
@@ -101,6 +103,8 @@ def show(summary: Summary) -> None:
     robots = [summary] if summary.beside is None else [summary, summary.beside]
     for lines in zip(*map(_lines, robots), strict=True):
         table.add_row(lines[0][0], *(text for _, text in lines))
+    if summary.engine != _USUAL_ENGINE:
+        table.add_row("engine", *(each.engine for each in robots))
     if summary.beside is not None:
         table.add_row("controller", *(each.controller for each in robots))
         table.add_row("priority", *(f"{each.priority:g}" for each in robots))
