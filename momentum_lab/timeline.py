@@ -14,7 +14,8 @@ _EVERY = 20
 def fork(session: Session, capacity: int) -> Session:
     """Another session that is where this one is and goes on by itself; its inbox is empty.
 
-    Its recording begins with the last sample of this one, if there is one.
+    What has been done in this one has been done in it, too. Its recording begins with the last sample of this one,
+    if there is one.
 
     Args:
         session: between two ticks.
@@ -22,6 +23,7 @@ def fork(session: Session, capacity: int) -> Session:
     """
     other = Session(session.scenario, session.robot, capacity)
     other.resume(session.snapshot())
+    other.log = list(session.log)
     if len(session.recording):
         other.recording.next_row()[:] = session.recording.latest.row
     return other

@@ -26,6 +26,7 @@ FLOORS: tuple[frozenset[str], ...] = (
             "beside",
             "changing",
             "choices",
+            "choice_words",
             "patience",
             "effects",
             "fall",

@@ -9,7 +9,11 @@ from momentum_lab.app.viser_page import FOLDED, PHONE, ROW, UNFOLDED
 WIDE = '<span class="lab-wide"></span>'
 """First in a folder: below it every name stands above its slider, on a line of its own."""
 
+LEVEL = '<span class="lab-level"></span>'
+"""First in a form: its widgets stand exactly below those outside of it."""
+
 _ROW = f"{ROW}:has(>div>p>label)"
+_LEVEL_NAME = f"form:has(>div>.lab-level)>div>{_ROW}>div:first-child"
 _WIDE_ROW = f"div:has(>.lab-wide)~* {_ROW}"
 
 # What a hand has unfolded comes into sight; it lies below everything else.
@@ -27,6 +31,8 @@ STYLE = (
     "<style>"
     # Viser draws names pale, their letters so close that they touch, and breaks units after a slash.
     "p>label{letter-spacing:-.2px;color:var(--mantine-color-text)}p>label wbr{display:none}"
+    # Viser counts a form as a folder, and gives names in one less room.
+    f"{_LEVEL_NAME}{{width:7.25em!important}}"
     f"{_WIDE_ROW}{{flex-wrap:wrap}}{_WIDE_ROW}>div:first-child{{width:100%!important}}"
     f"{_WIDE_ROW}>div:first-child label{{letter-spacing:0}}"
     # A tick stands beside its words.

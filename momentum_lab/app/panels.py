@@ -119,7 +119,8 @@ class Panels:
         self._gui, self._group, self._roomy = gui, group, plan.roomy
         self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
         # The list of commands has them in this order: what is used most comes first.
-        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
+        tabs = Tabs(client, group)
+        add_keys(client, post, self._push, self.push, self.status, tabs, self.runs, self.hand, appearance)
         self.learn.start(lesson)
         demo.listen()
 

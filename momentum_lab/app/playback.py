@@ -173,9 +173,13 @@ class Playback:
 
     def recorded(self) -> RunTaken:
         """The run as it is now, with the samples of both robots."""
-        recorded, beside = recorded_of(self.session, self._waiting, self._difference), self.beside
-        other = None if beside is None else recorded_of(beside.session, beside.waiting, None)
-        return msgspec.structs.replace(recorded, other=other)
+        recorded = recorded_of(self.session, self._waiting, self._difference)
+        if self.beside is None:
+            return recorded
+        other = recorded_of(self.beside.session, self.beside.waiting, None)
+        return msgspec.structs.replace(
+            recorded, other=msgspec.structs.replace(other, since=self.beside.since)
+        )
 
     @property
     def _difference(self) -> Beside | None:

@@ -107,8 +107,7 @@ class SharePanel:
         self._what = gui.add_dropdown(
             "file",
             tuple(_FILES),
-            hint="All but the run file hold the last minute since the robot stood up. Pictures, recordings and "
-            "films show both robots, the others the first.",
+            hint="All but the run file hold the last minute since the robot stood up. All hold both robots.",
         )
         self._download = gui.add_button("Download", color="gray", icon=viser.Icon.DOWNLOAD)
         self._progress = gui.add_html("", visible=False)
