@@ -48,6 +48,10 @@ class Timeline:
         if not self._snapshots or self._session.ticks - self._snapshots[-1].ticks >= _EVERY:
             self._snapshots.append(self._session.snapshot())
 
+    def remembers(self, ticks: int) -> bool:
+        """Whether the session can go back so many ticks."""
+        return self._snapshots[0].ticks <= self._session.ticks - ticks
+
     def go_back(self, ticks: int) -> None:
         """Let the session be where it was so many ticks ago, and forget what came after.
 
@@ -68,4 +72,4 @@ class Timeline:
             session.tick()
 
     def _time(self, snapshot: Snapshot) -> float:
-        return float(snapshot.changing["_tick_of_run"] * self._session.scenario.timestep)
+        return float(snapshot.tick_of_run * self._session.scenario.timestep)

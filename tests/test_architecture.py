@@ -24,6 +24,7 @@ FLOORS: tuple[frozenset[str], ...] = (
         {
             "active_bounds",
             "beside",
+            "changing",
             "choices",
             "choice_words",
             "patience",
@@ -39,6 +40,7 @@ FLOORS: tuple[frozenset[str], ...] = (
             "recording",
             "session",
             "start",
+            "steering",
             "terrain",
             "timeline",
             "trace",

@@ -93,8 +93,8 @@ class Panels:
         group = gui.add_tab_group()  # five of them fit into one line without icons
         with group.add_tab("Push"):
             self.push = PushPanel(gui, post, tell, redraw)
-            SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
-            pulling = Pulling(client, self.push, self.settings, post, lambda: sharing.take(False).pushes)
+            SequencePanel(gui, post, tell, self.push, lambda: sharing.take_run().pushes)
+            pulling = Pulling(client, self.push, self.settings, post, lambda: sharing.take_run().pushes)
             self.hand = Hand(self.push.hand, pulling, tell)
             self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control"):

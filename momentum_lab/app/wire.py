@@ -35,9 +35,11 @@ class TakeBack(msgspec.Struct, frozen=True, tag=True):
 
 
 class RunWanted(msgspec.Struct, frozen=True, tag=True):
-    """What has been done so far has to be told, with the recording or without."""
+    """What has been done so far has to be told."""
 
-    recording: bool
+
+class RecordingWanted(msgspec.Struct, frozen=True, tag=True):
+    """What has been done so far has to be told, with all samples."""
 
 
 class Fallen(msgspec.Struct, frozen=True):
@@ -220,12 +222,12 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
     since: float = 0.0
 
 
-Message = events.Event | LessonEvent | DemoEvent | FrameTaken | FrameWanted | OpenRun | TakeBack | RunWanted
+Asked = FrameTaken | FrameWanted | OpenRun | TakeBack | RunWanted | RecordingWanted
+Message = events.Event | LessonEvent | DemoEvent | Asked
 Answer = Frame | RunTaken
 
 _encoder = msgspec.msgpack.Encoder()
 _message_decoder = msgspec.msgpack.Decoder(Message)
-_frame_decoder = msgspec.msgpack.Decoder(Frame)
 _answer_decoder = msgspec.msgpack.Decoder(Answer)
 
 
@@ -237,11 +239,6 @@ def packed(message: Message | Answer) -> bytes:
 def unpacked_message(data: bytes) -> Message:
     """The message that `packed` has written."""
     return _message_decoder.decode(data)
-
-
-def unpacked_frame(data: bytes) -> Frame:
-    """The frame that `packed` has written."""
-    return _frame_decoder.decode(data)
 
 
 def unpacked_answer(data: bytes) -> Answer:
