@@ -15,9 +15,11 @@ def before_film(reel: Reel, pace: float | None) -> str:
         pace: how long one of them took in the last such film, s; None before the first.
     """
     count = len(reel.rows)
-    length = "the first picture tells how long it takes" if pace is None else f"about {_time(count * pace)}"
+    length = (
+        "the first one tells how long it takes" if pace is None else f"it takes about {_time(count * pace)}"
+    )
     empty = "" if reel.pushes else ", in which there was no push"
-    return f"{part(reel)} of the run{empty}: {count} pictures, {length}."
+    return f"{_part(reel)} of the run{empty}: {count} pictures; {length}."
 
 
 def during_film(reel: Reel, fraction: float, passed: float) -> str:
@@ -29,13 +31,13 @@ def during_film(reel: Reel, fraction: float, passed: float) -> str:
         passed: since the first was asked for, s.
     """
     left = _time(passed * (1.0 / fraction - 1.0)) if fraction else _time(0.0)
-    return f"{part(reel)} of the run: {int(100.0 * fraction)} % taken, {left} to go."
+    return f"{_part(reel)} of the run: {int(100.0 * fraction)} % taken, {left} to go."
 
 
-def part(reel: Reel) -> str:
+def _part(reel: Reel) -> str:
     """Which part of the run a film shows."""
     start, end = reel.span
-    return f"film from {start:.1f} s to {end:.1f} s"
+    return f"Film from {start:.1f} s to {end:.1f} s"
 
 
 def _time(seconds: float) -> str:

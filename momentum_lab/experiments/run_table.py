@@ -44,10 +44,8 @@ def thinned_words(content: bytes, timestep: float) -> str:
     every = round((times[1] - times[0]) / timestep) if len(times) == 2 else 1
     if every == 1:
         return ""
-    return (
-        f"The table holds one tick of {every}, a row each {1e3 * every * timestep:g} ms: {MOST_ROWS:,} rows at most. "
-        "The trace (.npz) holds every tick."
-    )
+    pace = f"a row each {1e3 * every * timestep:g} ms, to have {MOST_ROWS:,} rows at most"
+    return f"The table holds one tick in {every}, {pace}. The trace (.npz) holds every tick."
 
 
 def header(run: FinishedRun) -> list[str]:

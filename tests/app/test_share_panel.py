@@ -178,7 +178,7 @@ def test_what_a_table_leaves_out_is_told_until_the_next_download(desk, monkeypat
     desk.gui.widgets["file"].value = "table (.csv)"
     desk.do("Download")
     assert desk.sent == {"my-run-g1.csv": thin}
-    assert "one tick of 6, a row each 6 ms" in desk.gui.html[-1].content
+    assert "one tick in 6, a row each 6 ms" in desk.gui.html[-1].content
     assert desk.gui.html[-1].visible
     desk.gui.widgets["file"].value = "run file (.json)"
     desk.do("Download")
@@ -205,9 +205,9 @@ def test_before_a_film_begins_it_says_from_when_to_when_it_is_and_how_long_it_ta
     desk.gui.widgets["file"].value = "film (.mp4)"
     desk.do("Download")
     desk.do("Download")
-    assert all("film from 0.0 s to 0.3 s of the run" in line for line in (*desk.begun, *desk.lines))
-    assert "8 pictures, the first picture tells how long it takes" in desk.begun[0]
-    assert "8 pictures, about 30 s" in desk.begun[1]  # what the first film took
+    assert all("Film from 0.0 s to 0.3 s of the run" in line for line in (*desk.begun, *desk.lines))
+    assert "8 pictures; the first one tells how long it takes" in desk.begun[0]
+    assert "8 pictures; it takes about 30 s" in desk.begun[1]  # what the first film took
 
 
 def test_a_film_without_a_push_says_so(desk):

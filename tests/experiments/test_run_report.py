@@ -159,7 +159,7 @@ def test_a_long_run_gives_a_thinner_table(run):
 def test_a_thinner_table_says_how_thin_it_is(run):
     """500 ticks of 1 ms: all of them, every fifth, a single one, none."""
     words = {most: thinned_words(table(run, most), run.scenario.timestep) for most in (500, 100, 1)}
-    assert words[100].startswith("The table holds one tick of 5, a row each 5 ms")
+    assert words[100].startswith("The table holds one tick in 5, a row each 5 ms")
     assert words[500] == words[1] == ""
     empty = dataclasses.replace(run, recording=Recording(run.recording.layout, 1))
     assert thinned_words(table(empty), run.scenario.timestep) == ""
