@@ -9,7 +9,8 @@ The points of one body move with its frame, so J = S J_f with the Jacobians J_f 
 S (J_f H^-1 J_f^T) S^T: on two feet 12 columns go through the Cholesky factor of H instead of 24. Pinocchio's own
 contact Cholesky needs twice the time for the same, and projected Gauss-Seidel was 4 % off after 2000 iterations,
 so the dense form with Pinocchio's ADMM is used (exact second-order cones, 5 iterations while standing,
-velocities right to 1e-10 m/s), started cold every step: a step depends on nothing but its arguments.
+velocities right to 1e-10 m/s), started cold every step: a step depends on nothing but its arguments. A robot that
+lies on more bodies than its soles is another matter, see `interior_point`; where that finds no answer, ADMM does.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ import pinocchio as pin
 from momentum_lab.cholesky import factorize
 from momentum_lab.errors import SimulationError
 from momentum_lab.physics.contact_terms import closing_speed, contact_problem, moved, resting
+from momentum_lab.physics.interior_point import cone_impulses
 
 # Velocities are right to this, m/s: a foot that stands for a minute creeps by less than a micrometre.
 _PRECISION = 1e-9
@@ -31,6 +33,9 @@ _PRECISION = 1e-9
 _POINTS_OF_SOLES = 8
 _PRECISION_LYING = 1e-6
 _MAX_ITERATIONS = 2000
+# With more bodies than two soles on the ground, its points are solved for together to this, m/s.
+_SOLES = 2
+_PRECISION_OF_BODIES = 1e-8
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +60,11 @@ class Contacts:
     def jacobian(self) -> np.ndarray:
         """J = S J_f, velocity of each point in the axes of its ground, normal last (3 n, nv)."""
         return self.spread @ self.frame_jacobian
+
+    @property
+    def bodies(self) -> int:
+        """B, how many bodies the points are on."""
+        return self.ground_velocity.size // 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +108,8 @@ def solve_contact(
     Raises:
         SimulationError: H is not positive definite, that is: the state is not finite any more.
     """
+    if contacts.bodies > _SOLES:  # they never come to rest under the smallest impulses
+        return _sliding(mass_matrix, free_impulse, velocity, contacts, closing_speed(contacts.gap, timestep))
     answer = resting(
         mass_matrix,
         free_impulse,
@@ -131,34 +143,37 @@ def _sliding(
         factor, free_impulse, velocity, contacts.frame_jacobian
     )
     drift -= contacts.ground_velocity
-    solver = _solve_cones(coupling, drift, closing, contacts)
-    impulse = solver.getPrimalSolution().copy()  # read-only
+    impulse, residual, iterations = _cone_impulses(coupling, drift, closing, contacts)
     velocity, frame_impulse = moved(factor, half, free_velocity, contacts.spread, impulse)
-    return ContactSolution(
-        velocity=velocity,
-        impulse=impulse.reshape(-1, 3),
-        frame_impulse=frame_impulse,
-        residual=float(solver.getAbsoluteConvergenceResidual()),
-        iterations=int(solver.getIterationCount()),
-    )
+    return ContactSolution(velocity, impulse.reshape(-1, 3), frame_impulse, residual, iterations)
 
 
-def _solve_cones(
+def _cone_impulses(
     coupling: np.ndarray, drift: np.ndarray, closing: np.ndarray, contacts: Contacts
-) -> pin.ADMMContactSolver:
-    """A solver that has found impulses in the friction cones with W lambda + g complementary to them."""
-    spread, size = contacts.spread, 3 * closing.size
+) -> tuple[np.ndarray, float, int]:
+    """Impulses (3 n,) in the friction cones with W lambda + g complementary to them, residual and iterations."""
+    spread = contacts.spread
     delassus = spread @ coupling @ spread.T
     drift = spread @ drift
     drift[2::3] += closing
-    solver = pin.ADMMContactSolver(size)
-    precision = _PRECISION if closing.size <= _POINTS_OF_SOLES else _PRECISION_LYING
+    if contacts.bodies > _SOLES:
+        answer = cone_impulses(delassus, drift, contacts.friction, _PRECISION_OF_BODIES)
+        if answer[1] <= _PRECISION_OF_BODIES:
+            return answer
+    return _by_admm(delassus, drift, contacts.friction)
+
+
+def _by_admm(delassus: np.ndarray, drift: np.ndarray, friction: np.ndarray) -> tuple[np.ndarray, float, int]:
+    """The same from Pinocchio's solver."""
+    solver = pin.ADMMContactSolver(drift.size)
+    precision = _PRECISION if friction.size <= _POINTS_OF_SOLES else _PRECISION_LYING
     solver.setAbsolutePrecision(precision)
     solver.setRelativePrecision(1e-3 * precision)
     solver.setMaxIterations(_MAX_ITERATIONS)
-    cones = _cones(tuple(contacts.friction.tolist()))
-    solver.solve(pin.DelassusOperatorDense(delassus), drift, cones, _no_compliance(size))
-    return solver
+    cones = _cones(tuple(friction.tolist()))
+    solver.solve(pin.DelassusOperatorDense(delassus), drift, cones, _no_compliance(drift.size))
+    impulse = solver.getPrimalSolution().copy()  # read-only
+    return impulse, float(solver.getAbsoluteConvergenceResidual()), int(solver.getIterationCount())
 
 
 @lru_cache(maxsize=64)
