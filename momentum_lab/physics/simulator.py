@@ -16,7 +16,7 @@ from momentum_lab.physics.implicit_torque import ImplicitTorque
 from momentum_lab.physics.joint_friction import joint_friction
 from momentum_lab.physics.joint_stops import joint_stops
 from momentum_lab.physics.push import Push, apply_pushes
-from momentum_lab.physics.touch import BodyPoints, SolePoints, Touches, together
+from momentum_lab.physics.touch import BodyPoints, SolePoints, Touches, near_points, together
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
 
@@ -112,7 +112,7 @@ class Simulator:
         """All points that may touch: soles, and other bodies in a fall."""
         soles = self._soles.touches(dynamics, self.ground, time)
         bodies = self._bodies.touches(dynamics.state, self.ground.floor)
-        return soles if bodies is None else together(soles, bodies)
+        return soles if bodies is None else together(near_points(soles), bodies)
 
     def _passive(self, dynamics: Dynamics) -> list[ImplicitTorque]:
         """What joints do of themselves: their stops, and their friction if they have any."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
@@ -14,11 +14,10 @@ from momentum_lab.physics.contact import Contacts
 from momentum_lab.physics.ground import Ground, Patch
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
+from momentum_lab.robot.terms import Frames, memory_of
 
 # Points this close to the ground take part in the contact problem, m.
 _MARGIN = 0.01
-# Instead of a foot's index.
-_OTHER = np.array([-1])
 _MATRIX, _VECTOR, _STACK = "f8[:, ::1]", "f8[::1]", "f8[:, :, ::1]"
 
 
@@ -147,6 +146,125 @@ def placed_soles(
     )
 
 
+@compiled(
+    f"Tuple(({_MATRIX}, {_VECTOR}, {_VECTOR}))"
+    f"(f8[:, :], f8[:, :, :], i8[::1], i8[::1], {_MATRIX}, {_VECTOR}, {_VECTOR})"
+)
+def placed_bodies(
+    joint_position: np.ndarray,
+    joint_rotation: np.ndarray,
+    joint: np.ndarray,
+    body: np.ndarray,
+    points: np.ndarray,
+    plane_origin: np.ndarray,
+    normal: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where the points of bodies are, over one plane.
+
+    Args:
+        joint_position: origins of all joints in the world (njoints, 3), m.
+        joint_rotation: their axes (njoints, 3, 3).
+        joint: which joint carries each body (B,).
+        body: which body each point is on (P,).
+        points: in the frames of those joints (P, 3), m.
+        plane_origin: a point of the plane (3,), m.
+        normal: of the plane (3,).
+
+    Returns:
+        Positions (P, 3), gaps (P,) and the least gap of each body (B,), m; NaN where a state is not finite.
+    """
+    position, gap = np.empty_like(points), np.zeros(len(points))
+    clearance = np.full(len(joint), np.inf)
+    for i in range(len(points)):
+        place, turn = joint_position[joint[body[i]]], joint_rotation[joint[body[i]]]
+        for k in range(3):
+            position[i, k] = place[k]
+            for j in range(3):
+                position[i, k] += turn[k, j] * points[i, j]
+            gap[i] += (position[i, k] - plane_origin[k]) * normal[k]
+        if not gap[i] > clearance[body[i]]:
+            clearance[body[i]] = gap[i]
+    return position, gap, clearance
+
+
+@compiled(
+    f"Tuple(({_MATRIX}, {_MATRIX}, {_VECTOR}, {_VECTOR}, {_VECTOR}, {_MATRIX}, {_MATRIX}, i8[::1]))"
+    f"(f8[:, :], f8[::1, :], i8[::1], {_MATRIX}, i8[::1], {_MATRIX}, {_VECTOR}, {_MATRIX}, f8)"
+)
+def touching_bodies(
+    joint_position: np.ndarray,
+    joint_jacobian: np.ndarray,
+    joint: np.ndarray,
+    moved_by: np.ndarray,
+    body: np.ndarray,
+    position: np.ndarray,
+    gap: np.ndarray,
+    plane_axes: np.ndarray,
+    friction: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The points near a plane at rest, and how the bodies they are on move.
+
+    Args:
+        joint_position: origins of all joints in the world (njoints, 3), m.
+        joint_jacobian: spatial velocities about the world origin, of which each joint is a column (6, nv).
+        joint: which joint carries each body (B,).
+        moved_by: 1 for velocities that move a body, 0 for all others (B, nv).
+        body: which body each point is on, in ascending order (P,).
+        position: of the points in the world (P, 3), m.
+        gap: of the points (P,), m.
+        plane_axes: axes of the plane, its normal last (3, 3).
+        friction: Coulomb coefficient of the plane.
+
+    Returns:
+        As `placed_soles`, for the bodies that have a point near the plane, and those points of theirs.
+    """
+    near = np.flatnonzero(gap < _MARGIN)
+    bodies = np.unique(body[near])
+    jacobian, origin = np.empty((6 * len(bodies), moved_by.shape[1])), np.empty((len(bodies), 3))
+    spread = np.zeros((3 * len(near), 6 * len(bodies)))
+    row = 0
+    for i, one in enumerate(bodies):
+        origin[i] = joint_position[joint[one]]
+        x, y, z = origin[i]
+        block = jacobian[6 * i : 6 * i + 6]
+        for j in range(moved_by.shape[1]):
+            part = moved_by[one, j]
+            wx, wy, wz = joint_jacobian[3, j], joint_jacobian[4, j], joint_jacobian[5, j]
+            block[0, j] = part * (joint_jacobian[0, j] + wy * z - wz * y)
+            block[1, j] = part * (joint_jacobian[1, j] + wz * x - wx * z)
+            block[2, j] = part * (joint_jacobian[2, j] + wx * y - wy * x)
+            block[3, j], block[4, j], block[5, j] = part * wx, part * wy, part * wz
+        mine = position[near[body[near] == one]]
+        spread[row : row + 3 * len(mine), 6 * i : 6 * i + 6] = spread_of(mine, origin[i], plane_axes)
+        row += 3 * len(mine)
+    return (
+        jacobian,
+        spread,
+        gap[near],
+        np.full(len(near), friction),
+        np.zeros(6 * len(bodies)),
+        position[near],
+        origin,
+        np.full(len(bodies), -1),
+    )
+
+
+def near_points(touches: Touches) -> Touches:
+    """Only the points that are near their ground, as of other bodies: of a sole on edge, those of that edge."""
+    contacts = touches.contacts
+    near = contacts.gap < _MARGIN
+    if near.all():
+        return touches
+    frames = contacts.spread.shape[1]
+    contacts = replace(
+        contacts,
+        spread=contacts.spread.reshape(-1, 3, frames)[near].reshape(-1, frames),
+        gap=contacts.gap[near],
+        friction=contacts.friction[near],
+    )
+    return replace(touches, contacts=contacts, position=touches.position[near])
+
+
 def together(*groups: Touches) -> Touches:
     """The points of some groups of bodies as one group."""
     contacts = [group.contacts for group in groups]
@@ -186,19 +304,20 @@ class BodyPoints:
     """
 
     def __init__(self, robot: RobotModel, timestep: float) -> None:
-        model = robot.model
-        links = [(model.frames[robot.frame(link)], points) for link, points in robot.spec.fall_points.items()]
+        model, links = robot.model, robot.spec.fall_points
         self._model, self._data = model, model.createData()
-        self._joints = [int(frame.parentJoint) for frame, _ in links]
-        self._points = [
-            np.array([frame.placement.act(np.array(p)) for p in points]) for frame, points in links
+        self._memory = memory_of(self._data)
+        self._frames = Frames.of(model, [robot.frame(link) for link in links])
+        placed = [
+            [model.frames[robot.frame(link)].placement.act(np.array(point)) for point in points]
+            for link, points in links.items()
         ]
-        reaches = [
-            reach_of(model, joint, points) for joint, points in zip(self._joints, self._points, strict=True)
-        ]
-        self.reach = timestep * np.array(reaches)
+        self._points = np.array([point for points in placed for point in points]).reshape(-1, 3)
+        self._body = np.repeat(np.arange(len(placed)), [len(points) for points in placed])
+        joints = zip(self._frames.joint.tolist(), placed, strict=True)
+        self.reach = timestep * np.array([reach_of(model, joint, np.array(points)) for joint, points in joints])
         self._expected: State | None = None
-        self._clearance = np.zeros(len(links))
+        self._clearance = np.zeros(len(placed))
         self._clear = False
 
     def follow(self, state: State) -> None:
@@ -208,34 +327,34 @@ class BodyPoints:
 
     def touches(self, state: State, floor: Patch) -> Touches | None:
         """The points near the floor, body by body; None when there are none."""
-        if not self._points or (self._clear and state is self._expected):
+        if not self._points.size or (self._clear and state is self._expected):
             return None
         pin.forwardKinematics(self._model, self._data, state.q)
-        positions = [self._in_world(j, points) for j, points in zip(self._joints, self._points, strict=True)]
-        gaps = [floor.gap(position) for position in positions]
-        self._clearance = np.array([gap.min() for gap in gaps])
+        memory, frames, axes = self._memory, self._frames, np.ascontiguousarray(floor.rotation)
+        position, gap, self._clearance = placed_bodies(
+            memory.joint_position,
+            memory.joint_rotation,
+            frames.joint,
+            self._body,
+            self._points,
+            floor.origin,
+            axes[:, 2].copy(),
+        )
         if not self._clearance.min() < _MARGIN:  # so that NaN, too, touches nothing
             return None
         pin.computeJointJacobians(self._model, self._data)
-        touches = [
-            self._touch(joint, position[gap < _MARGIN], gap[gap < _MARGIN], floor)
-            for joint, position, gap in zip(self._joints, positions, gaps, strict=True)
-            if gap.min() < _MARGIN
-        ]
-        return together(*touches)
-
-    def _in_world(self, joint: int, points: np.ndarray) -> np.ndarray:
-        placement = self._data.oMi[joint]
-        return points @ placement.rotation.T + placement.translation
-
-    def _touch(self, joint: int, position: np.ndarray, gap: np.ndarray, floor: Patch) -> Touches:
-        jacobian = np.ascontiguousarray(
-            pin.getJointJacobian(self._model, self._data, joint, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
+        *contacts, position, origin, foot = touching_bodies(
+            memory.joint_position,
+            memory.joint_jacobian,
+            frames.joint,
+            frames.moved_by,
+            self._body,
+            position,
+            gap,
+            axes,
+            floor.friction,
         )
-        origin = self._data.oMi[joint].translation.copy()
-        spread = spread_of(position, origin, np.ascontiguousarray(floor.rotation))
-        contacts = Contacts(jacobian, spread, gap, np.full(gap.size, floor.friction), np.zeros(6))
-        return Touches(contacts, position, origin.reshape(1, 3), _OTHER)
+        return Touches(Contacts(*contacts), position, origin, foot)
 
 
 def reach_of(model: pin.Model, joint: int, points: np.ndarray) -> np.ndarray:
