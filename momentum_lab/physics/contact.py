@@ -9,12 +9,14 @@ The points of one body move with its frame, so J = S J_f with the Jacobians J_f 
 S (J_f H^-1 J_f^T) S^T: on two feet 12 columns go through the Cholesky factor of H instead of 24. Pinocchio's own
 contact Cholesky needs twice the time for the same, and projected Gauss-Seidel was 4 % off after 2000 iterations,
 so the dense form with Pinocchio's ADMM is used (exact second-order cones, 5 iterations while standing,
-velocities right to 1e-10 m/s), started cold every step: a step depends on nothing but its arguments. A robot that
-lies on more bodies than its soles is another matter, see `interior_point`; where that finds no answer, ADMM does.
+velocities right to 1e-10 m/s). The many points of a robot that lies share its weight in no definite way, and ADMM
+needs a thousand iterations: there it is the fallback of an interior point method. Both start cold every step: a step
+depends on nothing but its arguments.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -28,14 +30,16 @@ from momentum_lab.physics.interior_point import cone_impulses
 
 # Velocities are right to this, m/s: a foot that stands for a minute creeps by less than a micrometre.
 _PRECISION = 1e-9
-# With more points than two soles have, a robot lies on the ground: to converge as far would take ten times as
-# long, to no one's benefit.
+# With more points than two soles have, ADMM would take ten times as long to converge as far, to no one's benefit.
 _POINTS_OF_SOLES = 8
-_PRECISION_LYING = 1e-6
+_PRECISION_OF_MANY = 1e-6
 _MAX_ITERATIONS = 2000
-# With more bodies than two soles on the ground, its points are solved for together to this, m/s.
-_SOLES = 2
-_PRECISION_OF_BODIES = 1e-8
+# Velocities of a robot that lies are right to this, m/s: in a minute it creeps by less than a micrometre.
+_PRECISION_LYING = 1e-8
+
+# Impulses (3 n,) in the friction cones with W lambda + g complementary to them, from W, g and the friction (n,), how
+# far they are from that, and how many iterations they took.
+_Solver = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, float, int]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +64,6 @@ class Contacts:
     def jacobian(self) -> np.ndarray:
         """J = S J_f, velocity of each point in the axes of its ground, normal last (3 n, nv)."""
         return self.spread @ self.frame_jacobian
-
-    @property
-    def bodies(self) -> int:
-        """B, how many bodies the points are on."""
-        return self.ground_velocity.size // 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +107,6 @@ def solve_contact(
     Raises:
         SimulationError: H is not positive definite, that is: the state is not finite any more.
     """
-    if contacts.bodies > _SOLES:  # they never come to rest under the smallest impulses
-        return _sliding(mass_matrix, free_impulse, velocity, contacts, closing_speed(contacts.gap, timestep))
     answer = resting(
         mass_matrix,
         free_impulse,
@@ -123,15 +120,27 @@ def solve_contact(
     )
     if answer[-1] <= _PRECISION:
         return ContactSolution(*answer, iterations=0)
-    return _sliding(mass_matrix, free_impulse, velocity, contacts, closing_speed(contacts.gap, timestep))
+    return _solved(mass_matrix, free_impulse, velocity, contacts, timestep, _by_admm)
 
 
-def _sliding(
+def solve_lying(
     mass_matrix: np.ndarray,
     free_impulse: np.ndarray,
     velocity: np.ndarray,
     contacts: Contacts,
-    closing: np.ndarray,
+    timestep: float,
+) -> ContactSolution:
+    """The same as `solve_contact`, fast for points on many bodies, which are never all at rest."""
+    return _solved(mass_matrix, free_impulse, velocity, contacts, timestep, _by_interior_point)
+
+
+def _solved(
+    mass_matrix: np.ndarray,
+    free_impulse: np.ndarray,
+    velocity: np.ndarray,
+    contacts: Contacts,
+    timestep: float,
+    solver: _Solver,
 ) -> ContactSolution:
     """The same by a solver, for points that slide, lift, or come to rest under other impulses than the smallest."""
     factor = mass_matrix.copy()
@@ -143,30 +152,24 @@ def _sliding(
         factor, free_impulse, velocity, contacts.frame_jacobian
     )
     drift -= contacts.ground_velocity
-    impulse, residual, iterations = _cone_impulses(coupling, drift, closing, contacts)
-    velocity, frame_impulse = moved(factor, half, free_velocity, contacts.spread, impulse)
+    spread = contacts.spread
+    drift = spread @ drift
+    drift[2::3] += closing_speed(contacts.gap, timestep)
+    impulse, residual, iterations = solver(spread @ coupling @ spread.T, drift, contacts.friction)
+    velocity, frame_impulse = moved(factor, half, free_velocity, spread, impulse)
     return ContactSolution(velocity, impulse.reshape(-1, 3), frame_impulse, residual, iterations)
 
 
-def _cone_impulses(
-    coupling: np.ndarray, drift: np.ndarray, closing: np.ndarray, contacts: Contacts
+def _by_interior_point(
+    delassus: np.ndarray, drift: np.ndarray, friction: np.ndarray
 ) -> tuple[np.ndarray, float, int]:
-    """Impulses (3 n,) in the friction cones with W lambda + g complementary to them, residual and iterations."""
-    spread = contacts.spread
-    delassus = spread @ coupling @ spread.T
-    drift = spread @ drift
-    drift[2::3] += closing
-    if contacts.bodies > _SOLES:
-        answer = cone_impulses(delassus, drift, contacts.friction, _PRECISION_OF_BODIES)
-        if answer[1] <= _PRECISION_OF_BODIES:
-            return answer
-    return _by_admm(delassus, drift, contacts.friction)
+    answer = cone_impulses(delassus, drift, friction, _PRECISION_LYING)
+    return answer if answer[1] <= _PRECISION_LYING else _by_admm(delassus, drift, friction)
 
 
 def _by_admm(delassus: np.ndarray, drift: np.ndarray, friction: np.ndarray) -> tuple[np.ndarray, float, int]:
-    """The same from Pinocchio's solver."""
     solver = pin.ADMMContactSolver(drift.size)
-    precision = _PRECISION if friction.size <= _POINTS_OF_SOLES else _PRECISION_LYING
+    precision = _PRECISION if friction.size <= _POINTS_OF_SOLES else _PRECISION_OF_MANY
     solver.setAbsolutePrecision(precision)
     solver.setRelativePrecision(1e-3 * precision)
     solver.setMaxIterations(_MAX_ITERATIONS)

@@ -10,13 +10,14 @@ import numpy as np
 from momentum_lab.compiled import compiled
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.wrench import shift_wrench, sum_wrenches
-from momentum_lab.physics.contact import solve_contact
+from momentum_lab.physics.body_touch import BodyPoints
+from momentum_lab.physics.contact import solve_contact, solve_lying
 from momentum_lab.physics.ground import Ground
 from momentum_lab.physics.implicit_torque import ImplicitTorque
 from momentum_lab.physics.joint_friction import joint_friction
 from momentum_lab.physics.joint_stops import joint_stops
 from momentum_lab.physics.push import Push, apply_pushes
-from momentum_lab.physics.touch import BodyPoints, SolePoints, Touches, near_points, together
+from momentum_lab.physics.touch import SolePoints, Touches, near_points, together
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
 
@@ -80,7 +81,8 @@ class Simulator:
         passive = self._passive(dynamics)
         mass_matrix = _braked(dynamics.mass_matrix, force, passive) if passive else dynamics.mass_matrix
         touches = self._touches(dynamics, time)
-        solution = solve_contact(
+        solve = solve_lying if touches.lying else solve_contact
+        solution = solve(
             mass_matrix, self.timestep * force, dynamics.state.v, touches.contacts, self.timestep
         )
         q = self.robot.integrate(dynamics.state.q, self.timestep * solution.velocity)
