@@ -20,7 +20,7 @@ with warnings.catch_warnings():
 
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
-from tests.order import ByFile, begin_first
+from tests.order import ByFile, begin_first, try_again
 
 # Matrices of this size are done before a second thread has woken up; two of them only get in each other's way.
 threadpoolctl.threadpool_limits(1, user_api="blas")
@@ -39,10 +39,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     begin_first(items)
+    try_again(items)
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> ByFile:
     return ByFile(config, log)
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Close what the counting of second tries leaves open."""
+    if "workerinput" in vars(config):
+        config.failures_db.sock.close()
 
 
 @pytest.hookimpl(wrapper=True)

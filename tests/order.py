@@ -1,4 +1,4 @@
-"""Which files of tests begin first, and which stay together, so that two processes end at the same time."""
+"""Which tests begin first, which stay together, so that two processes end at the same time; which are tried again."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import pytest
 from xdist.scheduler import LoadFileScheduling
 
 BROWSER = "tests/browser"
+# Processes, threads and pages in real time: on two busy cores one of them is late now and then.
+REAL_TIME = (BROWSER, "tests/app")
 # They look at the same runs of the figures, which a process plays once (tests/experiments/played.py).
 FIGURES = tuple(
     f"tests/experiments/test_{name}.py"
@@ -54,6 +56,13 @@ def begin_first(items: list[pytest.Item]) -> None:
         return LONGEST.index(name) if name in LONGEST else len(LONGEST)
 
     items.sort(key=rank)
+
+
+def try_again(items: list[pytest.Item]) -> None:
+    """What happens in real time has a second try, which the summary tells; what fails twice has failed."""
+    for item in items:
+        if file_of(item).startswith(REAL_TIME):
+            item.add_marker(pytest.mark.flaky(reruns=1))
 
 
 def scope_of(nodeid: str) -> str:

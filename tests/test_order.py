@@ -40,3 +40,9 @@ def test_none_is_lost_and_long_files_begin_before_short_ones(request: pytest.Fix
     first = len(quiet) + len(browser) + len(long)
     assert set(begun[: len(quiet)]) == quiet
     assert begun[len(quiet) : first] == [*browser, *long]
+
+
+def test_only_what_happens_in_real_time_has_a_second_try(request: pytest.FixtureRequest) -> None:
+    again = {file_of(item) for item in request.session.items if item.get_closest_marker("flaky")}
+    assert all(name.startswith(("tests/browser/", "tests/app/")) for name in again)
+    assert "tests/test_order.py" not in again
