@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from momentum_lab.compiled import compiled
-from momentum_lab.elimination import eliminate, substitute
+from momentum_lab.physics.elimination import eliminate, substitute
 
 _MATRIX, _VECTOR, _STACK = "f8[:, ::1]", "f8[::1]", "f8[:, :, ::1]"
 

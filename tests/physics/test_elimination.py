@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from momentum_lab.elimination import eliminate, substitute
+from momentum_lab.physics.elimination import eliminate, substitute
 from tests.conftest import assert_close
 
 
