@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from momentum_lab.compiled import compiled
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.wrench import shift_wrench, sum_wrenches
 from momentum_lab.physics.body_touch import BodyPoints
-from momentum_lab.physics.contact import solve_contact, solve_lying
+from momentum_lab.physics.contact import ContactSolution, solve_contact, solve_lying
 from momentum_lab.physics.ground import Ground
 from momentum_lab.physics.implicit_torque import ImplicitTorque
 from momentum_lab.physics.joint_friction import joint_friction
@@ -80,8 +81,7 @@ class Simulator:
             force += push.generalized
         passive = self._passive(dynamics)
         mass_matrix = _braked(dynamics.mass_matrix, force, passive) if passive else dynamics.mass_matrix
-        touches = self._touches(dynamics, time)
-        solve = solve_lying if touches.lying else solve_contact
+        touches, solve = self._touches(dynamics, time)
         solution = solve(
             mass_matrix, self.timestep * force, dynamics.state.v, touches.contacts, self.timestep
         )
@@ -110,11 +110,13 @@ class Simulator:
             contact_residual=solution.residual,
         )
 
-    def _touches(self, dynamics: Dynamics, time: float) -> Touches:
-        """All points that may touch: soles, and other bodies in a fall."""
+    def _touches(self, dynamics: Dynamics, time: float) -> tuple[Touches, Callable[..., ContactSolution]]:
+        """All points that may touch, soles and other bodies in a fall, and what solves for them."""
         soles = self._soles.touches(dynamics, self.ground, time)
         bodies = self._bodies.touches(dynamics.state, self.ground.floor)
-        return soles if bodies is None else together(near_points(soles), bodies)
+        if bodies is None:
+            return soles, solve_contact
+        return together(near_points(soles), bodies), solve_lying
 
     def _passive(self, dynamics: Dynamics) -> list[ImplicitTorque]:
         """What joints do of themselves: their stops, and their friction if they have any."""

@@ -35,11 +35,6 @@ class Touches:
     origin: np.ndarray
     foot: np.ndarray
 
-    @property
-    def lying(self) -> bool:
-        """Whether a body that is not a foot is among them."""
-        return bool((self.foot < 0).any())
-
 
 class SolePoints:
     """The four corners of each sole, over the plates of a ground."""
