@@ -12,8 +12,7 @@ from momentum_lab.beside import Beside
 from momentum_lab.control.gains import values_of, with_gains
 from momentum_lab.control.ground_sense import GroundSense, ground_sense
 from momentum_lab.control.motion import AngularGoal, reach_of
-from momentum_lab.control.planner import OWN
-from momentum_lab.control.registry import check_planner, controller_entry
+from momentum_lab.control.registry import check_planner, controller_entry, planner_above
 from momentum_lab.errors import InputError
 from momentum_lab.events import (
     SelectController,
@@ -168,9 +167,8 @@ class Choices:
 
     def _controlled_by(self, name: str) -> Choices:
         """Another controller with its own gains; the planner stays if it can."""
-        entry = controller_entry(name)
-        planner = self.planner if self.planner in entry.planners else OWN
-        return replace(self, controller=name, gains=entry.gains, planner=planner)
+        gains, planner = controller_entry(name).gains, planner_above(name, self.planner)
+        return replace(self, controller=name, gains=gains, planner=planner)
 
 
 CHOICES = tuple(field.name for field in fields(Choices))

@@ -33,6 +33,7 @@ class FinishedRun:
         solver_failures: ticks on which the fallback torque was used.
         com_speed: of the CoM against the ground under the feet at the last sample, m/s.
         beside: the robot beside this one, over the same time; None when there is none.
+        since: when this robot came, s of the run; what fell before has not fallen by itself.
     """
 
     run: Run
@@ -45,6 +46,7 @@ class FinishedRun:
     solver_failures: int
     com_speed: float
     beside: FinishedRun | None = None
+    since: float = 0.0
 
     @classmethod
     def of(cls, session: Session) -> FinishedRun:
@@ -65,6 +67,11 @@ class FinishedRun:
     def scenario(self) -> Scenario:
         """What was decided before the run."""
         return self.run.scenario
+
+    @property
+    def lay_there(self) -> bool:
+        """Whether the robot had fallen already when it came."""
+        return self.fall is not None and self.fall.time < self.since
 
     @property
     def ticks(self) -> int:

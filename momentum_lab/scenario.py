@@ -12,6 +12,7 @@ import msgspec
 from momentum_lab.beside import Beside
 from momentum_lab.control.ground_sense import GROUND_SENSES, GroundSense
 from momentum_lab.control.motion import ANGULAR_GOALS, AngularGoal
+from momentum_lab.control.registry import planner_above
 from momentum_lab.errors import InputError, ScenarioError
 from momentum_lab.momentum.directions import directions
 from momentum_lab.paths import ASSETS
@@ -156,6 +157,9 @@ def sides(scenario: Scenario) -> tuple[Scenario, ...]:
     """The scenario of every robot in it: the first one's, and that of the robot beside it if there is one.
 
     Both start at the same place, so that two robots without a difference move bit for bit alike.
+
+    Raises:
+        InputError: the robot beside has a controller that does not exist.
     """
     beside, first = scenario.beside, msgspec.structs.replace(scenario, beside=None)
     if beside is None:
@@ -164,6 +168,7 @@ def sides(scenario: Scenario) -> tuple[Scenario, ...]:
     changes: dict[str, Any] = {"gains": {**(scenario.gains if same else {}), **beside.gains}}
     if beside.controller is not None:
         changes["controller"] = beside.controller
+        changes["planner"] = planner_above(beside.controller, scenario.planner)
     if beside.priority is not None:
         changes["priority"] = beside.priority
     return first, msgspec.structs.replace(first, **changes)

@@ -1,23 +1,20 @@
-"""The conductor: events in, ticks on, samples out. The same scenario and events give the same bits."""
+"""The conductor: events in, ticks on, samples out. The same scenario and events give the same bits.
+
+It keeps the world and the clock; between what the robot senses and what its motors are asked for stands
+`momentum_lab.steering`.
+"""
 
 from __future__ import annotations
 
 import math
 from collections import deque
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
+from momentum_lab.changing import changing, put_back
 from momentum_lab.choices import Choices
-from momentum_lab.control.controller import Controller, ControlOutput
-from momentum_lab.control.fallback import limp
-from momentum_lab.control.ground_sense import felt_ground
-from momentum_lab.control.handover import Handover
-from momentum_lab.control.motion import MovingGoal
-from momentum_lab.control.registry import controller_entry
-from momentum_lab.control.standing import StandingGoal
+from momentum_lab.control.controller import ControlOutput
 from momentum_lab.effects import ground_after, pushed_after, sized
 from momentum_lab.errors import SimulationError
 from momentum_lab.events import (
@@ -37,7 +34,6 @@ from momentum_lab.events import (
 )
 from momentum_lab.fall import Fall, fall_of
 from momentum_lab.momentum.foot_ground import FootGround
-from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.observe import Tick, observe
 from momentum_lab.physics.engines import check_ground, check_mismatch, world
 from momentum_lab.physics.ground import Ground
@@ -52,10 +48,8 @@ from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
 from momentum_lab.scenario import Scenario
 from momentum_lab.start import stance_of, standing_state, starting_state
+from momentum_lab.steering import Steering
 from momentum_lab.terrain import terrain
-
-# The force sensor of a foot feels the ground from this part of the weight on.
-_FELT = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +58,15 @@ class Snapshot:
 
     Attributes:
         ticks: how many ticks it had done.
-        changing: its changing attributes by name; none of them is ever changed in place.
+        tick_of_run: how many of them since the robot stood up.
+        changing: what changes in the session itself, by name.
+        steering: what changes in its steering, by name.
     """
 
     ticks: int
+    tick_of_run: int
     changing: dict[str, Any]
+    steering: dict[str, Any]
 
 
 class Session:
@@ -92,17 +90,7 @@ class Session:
     last_failure: str | None
     _scripted: tuple[Push, ...]
     _ground: Ground
-    _known: FootGround
-    _foot_wrench: np.ndarray
-    _motion: MovingGoal | None
-    _motion_start: float
-    _controller: Controller
-    _memory: Any
-    _torque: np.ndarray | None
     _line: Line
-    _taken_over: bool
-    _handover: Handover | None
-    _tick_of_run: int
 
     def __init__(
         self, scenario: Scenario, robot: RobotModel | None = None, capacity: int | None = None
@@ -112,19 +100,18 @@ class Session:
         self.choices = Choices.of(scenario)
         check_mismatch(scenario.engine, scenario.mismatch)
         self.stance = stance_of(self.robot, scenario.stance)
-        self._weight = self.robot.mass * GRAVITY
         self._ground = self._first_ground = terrain(scenario, self.robot, self.stance)
         self._scripted = tuple(sized(push, self.robot) for push in scenario.pushes)
         self._start = starting_state(self.robot, scenario)
-        self._home = self.robot.at(standing_state(self.robot, scenario))
-        self._standing_height = float(self._home.com_in_world[2]) - self._ground.at(0.0).height
-        self._goal = StandingGoal(self.robot, self._home, self.stance)
-        self._move(0.0)
-        self._make_controller()
+        home = self.robot.at(standing_state(self.robot, scenario))
+        self._standing_height = float(home.com_in_world[2]) - self._ground.at(0.0).height
+        self.steering = Steering(self.robot, home, self.stance, scenario.timestep, self.choices)
         self.recording = Recording(Layout.of(self.robot), capacity or self.scenario_ticks)
         self.log: list[LoggedEvent] = []
-        self.ticks = 0
+        self.ticks = self._tick_of_run = 0
         self._inbox: deque[SessionEvent] = deque()
+        # Choices and ground once all that is in the inbox has been done.
+        self._coming = (self.choices, self._ground)
         self._stand_up()
 
     @property
@@ -165,23 +152,13 @@ class Session:
         """Whether a push is held."""
         return self._pushed.held is not None
 
-    @property
-    def motion_reach(self) -> np.ndarray:
-        """How far the present motion moves each joint (na,), rad; zeros without one."""
-        return np.zeros(self.robot.na) if self._motion is None else self._motion.reach.sum(axis=0)
-
-    def angular_momentum_asked(self, time: float) -> np.ndarray:
-        """k_d of the present motion at a time of the run, s (3,), N m s; zeros without one."""
-        since = max(0.0, time - self._motion_start)
-        return np.zeros(3) if self._motion is None else self._motion.angular_momentum(since)
-
     def post(self, event: SessionEvent) -> None:
         """Put an event into the inbox; it takes effect at the start of the next tick.
 
         Raises:
             InputError: the event asks for something that does not exist or is out of range.
         """
-        self._check(event)
+        self._coming = self._checked(event)
         self._inbox.append(event)
 
     def choices_after(self, events: Iterable[SessionEvent]) -> Choices:
@@ -194,12 +171,12 @@ class Session:
         Raises:
             InputError: one asks for something that does not exist or is out of range.
         """
-        waiting = tuple(self._inbox)
+        waiting, coming = tuple(self._inbox), self._coming
         try:
             for event in events:
                 self.post(event)
         finally:
-            self._inbox = deque(waiting)
+            self._inbox, self._coming = deque(waiting), coming
 
     def tick(self) -> Sample:
         """One step of control and physics.
@@ -209,26 +186,27 @@ class Session:
         """
         self._drain_inbox()
         dynamics = self.dynamics
-        plates = self._ground.at(self.time)
-        output = self._control(self._believed(dynamics), plates)
+        time = self.time
+        plates = self._ground.at(time)
+        output = self._control(self._believed(dynamics), plates, time)
         torque, self._line = delayed(self._line, output.torque, self._ticks_late)
-        step = self._simulator.step(dynamics, torque, self._pushed.all, self.time)
-        self.fall = self.fall or fall_of(self.time, dynamics, step, plates.height, self._standing_height)
+        step = self._simulator.step(dynamics, torque, self._pushed.all, time)
+        self.fall = self.fall or fall_of(time, dynamics, step, plates.height, self._standing_height)
         sample = self._record(dynamics, output, step, plates)
         self._advance(output, step)
         return sample
 
     def snapshot(self) -> Snapshot:
         """Where the session is, between two ticks."""
-        return Snapshot(self.ticks, {name: getattr(self, name) for name in Session.__annotations__})
+        return Snapshot(self.ticks, self._tick_of_run, changing(self), changing(self.steering))
 
     def resume(self, snapshot: Snapshot) -> None:
         """Go back to where the session was; what has been recorded, logged and posted since is forgotten."""
         # The snapshot may be another session's, and ahead of this one.
-        self.recording.forget_last(max(0, self._tick_of_run - snapshot.changing["_tick_of_run"]))
-        for name, value in snapshot.changing.items():
-            setattr(self, name, value)
-        self.ticks = snapshot.ticks
+        self.recording.forget_last(max(0, self._tick_of_run - snapshot.tick_of_run))
+        put_back(self, snapshot.changing)
+        put_back(self.steering, snapshot.steering)
+        self.ticks, self._tick_of_run = snapshot.ticks, snapshot.tick_of_run
         self.log = [entry for entry in self.log if entry.tick < snapshot.ticks]
         self._inbox.clear()
         self._build()
@@ -246,75 +224,45 @@ class Session:
         seed, tick = self.scenario.seed, self._tick_of_run
         return self.robot.at(measured(self.robot, dynamics.state, self.choices.mismatch, seed, tick))
 
-    def _control(self, dynamics: Dynamics, plates: FootGround) -> ControlOutput:
-        """The controller's answer; a robot that has fallen goes limp."""
+    def _control(self, dynamics: Dynamics, plates: FootGround, time: float) -> ControlOutput:
+        """What steers the robot; one that has fallen goes limp."""
         if self.fall is not None:
-            return limp(self.robot, dynamics, self._memory)
-        self._known, choices = self._sensed(dynamics, plates), self.choices
-        reference = self._goal.reference(dynamics, self._known, choices.controlled, choices.planner)
-        if self._motion is not None:
-            reference = self._motion.applied(reference, self.time - self._motion_start)
-        output = self._controller.compute(dynamics, reference, choices.gains, choices.priority, self._memory)
+            return self.steering.limp(dynamics)
+        output = self.steering.output(dynamics, plates, self.choices, time)
         if output.failure is not None:
             self.solver_failures += 1
             self.last_failure = output.failure
-        torque = self._without_jump(output.torque)
-        return output if torque is output.torque else replace(output, torque=torque)
-
-    def _sensed(self, dynamics: Dynamics, plates: FootGround) -> FootGround:
-        """The ground as the robot takes it to be: as it is told, or as its soles feel it."""
-        if self.choices.ground_sense == "told":
-            return plates
-        return felt_ground(dynamics, self._foot_wrench[:, 2] > _FELT * self._weight, self._known)
-
-    def _move(self, start: float) -> None:
-        """Let the chosen motion begin at a time of the run, s, or end it; what the torque jumps by is faded."""
-        name, goal = self.choices.motion, self.choices.angular_goal
-        self._motion_start, self._taken_over = start, True
-        self._motion = None
-        if name:
-            self._motion = MovingGoal(self.robot, self._home, self.stance, name, goal, self.scenario.timestep)
-
-    def _without_jump(self, torque: np.ndarray) -> np.ndarray:
-        """The controller's torque; after a takeover it starts from the torque that was applied before."""
-        if self._taken_over and self._torque is not None:
-            self._handover = Handover.between(self._torque, torque)
-        elif self._handover is not None:
-            self._handover = self._handover.later(self.scenario.timestep)
-        self._taken_over = False
-        return torque if self._handover is None else self._handover.applied(torque)
+        return output
 
     def _record(self, dynamics: Dynamics, output: ControlOutput, step: Step, plates: FootGround) -> Sample:
-        tick = Tick(
-            self._real,
-            self.time,
-            self.scenario.timestep,
-            dynamics,
-            output,
-            step,
-            plates,
-            self.choices.priority,
-            self.fall is not None,
+        fallen, priority = self.fall is not None, self.choices.priority
+        clock = self.time, self.scenario.timestep
+        observe(
+            self.recording.next_row(),
+            Tick(self._real, *clock, dynamics, output, step, plates, priority, fallen),
         )
-        observe(self.recording.next_row(), tick)
         return self.recording.latest
 
     def _advance(self, output: ControlOutput, step: Step) -> None:
-        self._memory = output.memory
-        self._torque = step.torque
-        self._foot_wrench = step.foot_wrench
+        self.steering.remember(output.memory, step.torque, step.foot_wrench)
         self.state = step.state
         self.ticks += 1
         self._tick_of_run += 1
         if not step.state.is_finite():
             raise SimulationError(f"the state is not finite after {self.time:.3f} s; the recording is kept")
 
-    def _check(self, event: SessionEvent) -> None:
-        """Refuse what cannot be done, before it is in the inbox."""
+    def _checked(self, event: SessionEvent) -> tuple[Choices, Ground]:
+        """What will be the case after an event that comes after those in the inbox; refuses what cannot be done."""
         robot, engine = self.robot, self.scenario.engine
-        check_mismatch(engine, self.choices_after(self._inbox).after(event, robot).mismatch)
-        check_ground(engine, ground_after(self._ground, event, robot, self.time))
+        choices, ground = self._coming if self._inbox else (self.choices, self._ground)
+        choices = choices.after(event, robot)
+        ground = ground_after(ground, event, robot, self.time)
+        if isinstance(event, Reset):
+            ground = self._first_ground
+        check_mismatch(engine, choices.mismatch)
+        check_ground(engine, ground)
         pushed_after(self._pushed, event, robot, self.time)
+        return choices, ground
 
     def _apply(self, event: SessionEvent) -> None:
         self.choices = self.choices.after(event, self.robot)
@@ -322,15 +270,13 @@ class Session:
         self._ground = ground_after(self._ground, event, self.robot, self.time)
         match event:
             case SelectController():
-                self._make_controller()
-                self._memory = self._controller.initial_memory(self._believed(self.dynamics))
-                self._taken_over = True
+                self.steering.select(self.choices, self._believed(self.dynamics))
             case SetDirections() | SelectPlanner() | SetGroundSense():
-                self._taken_over = True
+                self.steering.take_over()
             case SetMotion():
-                self._move(self.time)
+                self.steering.move(self.choices, self.time)
             case SetAngularGoal():
-                self._move(self._motion_start)
+                self.steering.aim(self.choices)
             case SetMismatch() | SetFriction() | MoveGround() | StopGround():
                 self._build()
             case Reset():
@@ -343,9 +289,6 @@ class Session:
         self._ticks_late = ticks_late(self.choices.mismatch.torque_delay_ms, self.scenario.timestep)
         self._simulator = world(self.scenario.engine, self._real, self._ground, self.scenario.timestep)
 
-    def _make_controller(self) -> None:
-        self._controller = controller_entry(self.choices.controller).make(self.robot, self.scenario.timestep)
-
     def _stand_up(self) -> None:
         """The robot where it started, the clock at zero."""
         self.state = self._start
@@ -353,13 +296,9 @@ class Session:
         self.fall = None
         self.solver_failures = 0
         self.last_failure = None
-        self._tick_of_run, self._motion_start = 0, 0.0
+        self._tick_of_run = 0
         self._ground = self._first_ground
-        self._known = self._ground.at(0.0)
-        self._foot_wrench = np.zeros((len(self.robot.soles), 6))
         self._line = ()
         self._build()
-        self._memory = self._controller.initial_memory(self._believed(self.dynamics))
-        self._torque = self._handover = None
-        self._taken_over = False
+        self.steering.stand_up(self._believed(self.dynamics), self._ground.at(0.0))
         self.recording.clear()

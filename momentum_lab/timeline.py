@@ -14,7 +14,8 @@ _EVERY = 20
 def fork(session: Session, capacity: int) -> Session:
     """Another session that is where this one is and goes on by itself; its inbox is empty.
 
-    Its recording begins with the last sample of this one, if there is one.
+    What has been done in this one has been done in it, too. Its recording begins with the last sample of this one,
+    if there is one.
 
     Args:
         session: between two ticks.
@@ -22,6 +23,7 @@ def fork(session: Session, capacity: int) -> Session:
     """
     other = Session(session.scenario, session.robot, capacity)
     other.resume(session.snapshot())
+    other.log = list(session.log)
     if len(session.recording):
         other.recording.next_row()[:] = session.recording.latest.row
     return other
@@ -46,6 +48,10 @@ class Timeline:
         if not self._snapshots or self._session.ticks - self._snapshots[-1].ticks >= _EVERY:
             self._snapshots.append(self._session.snapshot())
 
+    def remembers(self, ticks: int) -> bool:
+        """Whether the session can go back so many ticks."""
+        return self._snapshots[0].ticks <= self._session.ticks - ticks
+
     def go_back(self, ticks: int) -> None:
         """Let the session be where it was so many ticks ago, and forget what came after.
 
@@ -66,4 +72,4 @@ class Timeline:
             session.tick()
 
     def _time(self, snapshot: Snapshot) -> float:
-        return float(snapshot.changing["_tick_of_run"] * self._session.scenario.timestep)
+        return float(snapshot.tick_of_run * self._session.scenario.timestep)

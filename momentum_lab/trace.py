@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
 from uuid import uuid4
@@ -16,6 +16,9 @@ from momentum_lab.control.controller import SLACKS
 from momentum_lab.errors import InputError
 from momentum_lab.recording import Recording
 
+SECOND = "second/"
+"""What the names of the second robot's arrays, and of its columns in a table, begin with."""
+
 
 @dataclass(frozen=True)
 class Trace:
@@ -26,12 +29,14 @@ class Trace:
         joint_names: the actuated joints.
         foot_names: the feet.
         meta: versions, scenario, gains, seed, robot description.
+        second: the same quantities of a robot beside the first, over its own time; empty without one.
     """
 
     columns: dict[str, np.ndarray]
     joint_names: tuple[str, ...]
     foot_names: tuple[str, ...]
     meta: dict[str, Any]
+    second: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 def writable_file(path: Path) -> Path:
@@ -51,8 +56,16 @@ def writable_file(path: Path) -> Path:
     return path
 
 
-def save_trace(recording: Recording, meta: dict[str, Any], path: Path) -> None:
+def save_trace(
+    recording: Recording, meta: dict[str, Any], path: Path, second: Recording | None = None
+) -> None:
     """Write a recording as .npz, whole or not at all, under exactly the given name.
+
+    Args:
+        recording: what happened.
+        meta: what the trace says about it.
+        path: where.
+        second: of the robot beside the first; None: there is none.
 
     Raises:
         InputError: the file cannot be written there.
@@ -60,7 +73,7 @@ def save_trace(recording: Recording, meta: dict[str, Any], path: Path) -> None:
     temporary = _beside(writable_file(path))
     try:
         with temporary.open("xb") as file:
-            write_trace(recording, meta, file)
+            write_trace(recording, meta, file, second)
         temporary.replace(path.resolve())
     except OSError as error:
         raise _not_writable(path, error) from error
@@ -68,13 +81,17 @@ def save_trace(recording: Recording, meta: dict[str, Any], path: Path) -> None:
         temporary.unlink(missing_ok=True)
 
 
-def write_trace(recording: Recording, meta: dict[str, Any], file: BinaryIO) -> None:
-    """Write a recording as .npz into an open file."""
+def write_trace(
+    recording: Recording, meta: dict[str, Any], file: BinaryIO, second: Recording | None = None
+) -> None:
+    """Write a recording as .npz into an open file; the arrays of a second robot are named `second/com` and so on."""
     arrays: dict[str, Any] = {name: recording.column(name) for name in recording.layout.shapes}
     arrays["joint_names"] = np.array(recording.layout.joint_names)
     arrays["foot_names"] = np.array(recording.layout.foot_names)
     arrays["slack_names"] = np.array(SLACKS)
     arrays["meta"] = np.array(json.dumps(meta, allow_nan=False))
+    if second is not None:
+        arrays |= {f"{SECOND}{name}": second.column(name) for name in second.layout.shapes}
     np.savez_compressed(file, **arrays)
 
 
@@ -110,6 +127,9 @@ def load_trace(path: Path | BinaryIO, name: str = "") -> Trace:
         joint_names, foot_names = arrays.pop("joint_names"), arrays.pop("foot_names")
         arrays.pop("slack_names", None)
         meta = json.loads(str(arrays.pop("meta")))
+        second = {
+            name.removeprefix(SECOND): arrays.pop(name) for name in list(arrays) if name.startswith(SECOND)
+        }
     except (FileNotFoundError, IsADirectoryError, PermissionError) as error:
         raise InputError(
             "recording", name or path, f"a .npz file that can be read ({error.strerror})"
@@ -118,7 +138,7 @@ def load_trace(path: Path | BinaryIO, name: str = "") -> Trace:
         raise InputError(
             "recording", name or path, "a .npz file that this lab has written, whole and unchanged"
         ) from error
-    return Trace(arrays, tuple(joint_names.tolist()), tuple(foot_names.tolist()), meta)
+    return Trace(arrays, tuple(joint_names.tolist()), tuple(foot_names.tolist()), meta, second)
 
 
 def _opened(path: Path | BinaryIO) -> BinaryIO:

@@ -24,7 +24,9 @@ FLOORS: tuple[frozenset[str], ...] = (
         {
             "active_bounds",
             "beside",
+            "changing",
             "choices",
+            "choice_words",
             "patience",
             "effects",
             "fall",
@@ -38,6 +40,7 @@ FLOORS: tuple[frozenset[str], ...] = (
             "recording",
             "session",
             "start",
+            "steering",
             "terrain",
             "timeline",
             "trace",

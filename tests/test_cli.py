@@ -312,7 +312,15 @@ def test_a_second_robot_is_in_the_summary_of_the_first(capsys: Output, tmp_path:
     assert (summary["priority"], summary["beside"]["priority"]) == (0.0, 1.0)
     assert summary["beside"]["peak_angular_momentum"] < summary["peak_angular_momentum"]
     assert summary["beside"]["beside"] is None
-    assert f"{out} holds the first robot" in output.err
+    trace = load_trace(Path(out))
+    assert trace.second.keys() == trace.columns.keys()
+    lowest = {
+        name: column["priority"].min()
+        for name, column in (("first", trace.columns), ("second", trace.second))
+    }
+    assert lowest == {"first": 0.0, "second": 1.0}
+    assert main(["replay", out]) == 0  # the first robot's bits, as before
+    assert "the same bits: 400 samples" in capsys.readouterr().out
     assert main(["run", "fig7", "--seconds", "0.02"]) == 0
     assert "priority" in capsys.readouterr().out
 

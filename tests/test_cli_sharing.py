@@ -94,6 +94,13 @@ def test_a_report_is_written_whole(tmp_path: Path, capsys: Output) -> None:
     assert path.read_text().rstrip().endswith("</html>")
 
 
+def test_a_report_of_two_shows_both(tmp_path: Path, capsys: Output) -> None:
+    path = tmp_path / "report.html"
+    assert main(["report", "fig7", "--robot", "g1", "--seconds", "0.25", "--out", str(path)]) == 0
+    assert capsys.readouterr().err == ""
+    assert "<th>priority 0</th><th>priority 1</th>" in path.read_text()
+
+
 @pytest.mark.parametrize("ending", [".html", ".viser", ".HTML"])
 def test_a_recording_is_written_whole(ending: str, tmp_path: Path, capsys: Output) -> None:
     path = tmp_path / f"r{ending}"

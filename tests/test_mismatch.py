@@ -39,7 +39,7 @@ class Spy:
 def spied(robot, mismatch: Mismatch, ticks: int = 0, **changes) -> tuple[Session, Spy]:
     scenario = Scenario("test", robot=robot.spec.name, seed=11, mismatch=mismatch, **changes)
     session = Session(scenario, robot)
-    session._controller = spy = Spy(session._controller)
+    session.steering._controller = spy = Spy(session.steering._controller)
     for _ in range(ticks):
         session.tick()
     return session, spy

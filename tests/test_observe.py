@@ -203,7 +203,7 @@ def test_slacks_and_torque_ratio_are_the_controllers(robot):
     column = session.recording.column
     for i in range(210, 600, 40):
         dynamics = robot.at(State(column("q")[i], column("v")[i]))
-        reference = session._goal.reference(dynamics, LEVEL)
+        reference = session.steering._goal.reference(dynamics, LEVEL)
         out = controller.compute(dynamics, reference, entry.gains, 0.0, None)
         assert_close(column("slack")[i], np.array([out.slack.get(name, 0.0) for name in SLACKS]), 1e-6)
         assert column("torque_ratio")[i] == pytest.approx(np.abs(out.torque / robot.effort_limit).max())

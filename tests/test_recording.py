@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import stat
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -236,6 +237,21 @@ def test_name_is_taken_exactly_as_given(tmp_path: Path) -> None:
     save_trace(filled(3, 3), {"a": 1}, tmp_path / "trace")
     assert [path.name for path in tmp_path.iterdir()] == ["trace"]
     assert load_trace(tmp_path / "trace").meta == {"a": 1}
+
+
+def test_a_second_robot_adds_arrays_and_changes_none(tmp_path: Path) -> None:
+    save_trace(filled(3, 3), {"a": 1}, tmp_path / "alone.npz")
+    save_trace(filled(3, 3), {"a": 1}, tmp_path / "pair.npz", filled(3, 2))
+    with zipfile.ZipFile(tmp_path / "alone.npz") as alone, zipfile.ZipFile(tmp_path / "pair.npz") as pair:
+        before = {name: alone.read(name) for name in alone.namelist()}
+        after = {name: pair.read(name) for name in pair.namelist()}
+    assert after | before == after
+    assert {name for name in after if name not in before} == {
+        f"second/{name}.npy" for name in filled(3, 3).layout.shapes
+    }
+    trace = load_trace(tmp_path / "pair.npz")
+    assert (len(trace.columns["time"]), len(trace.second["time"])) == (3, 2)
+    assert load_trace(tmp_path / "alone.npz").second == {}
 
 
 def test_file_has_the_rights_of_any_new_file(tmp_path: Path) -> None:

@@ -7,6 +7,9 @@ from typing import Any
 import msgspec
 import pytest
 
+from momentum_lab.beside import Beside
+from momentum_lab.choices import Choices
+from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import ScenarioError
 from momentum_lab.physics.push import Push
@@ -158,6 +161,17 @@ def test_another_controller_beside_starts_with_its_own_gains() -> None:
     assert (second.controller, second.gains) == ("slack-qp", {"com_weight": 2.0})
     same = changed(BUSY, beside={"gains": {"angular_damping": 4.0}})
     assert sides(same)[1].gains == {"linear_damping": 9.5, "angular_damping": 4.0}
+
+
+@pytest.mark.parametrize("planner", PLANNERS)
+@pytest.mark.parametrize("controller", CONTROLLERS)
+def test_a_second_robot_from_the_start_has_the_choices_of_one_that_comes_later(controller, planner) -> None:
+    """Above a controller that takes no planner the second robot goes its own way, in a file as in the lab."""
+    beside = Beside(controller, 0.25)
+    scenario = Scenario("two", planner=planner, beside=beside)
+    first, second = (Choices.of(side) for side in sides(scenario))
+    assert first.planner == planner
+    assert second == first.beside(beside)
 
 
 def test_checked_refuses_nan_that_slipped_past_the_ranges() -> None:

@@ -12,7 +12,16 @@ import pytest
 
 from momentum_lab.control.computed_torque import ComputedTorque
 from momentum_lab.errors import GainError, InputError, ScenarioError, SimulationError
-from momentum_lab.events import ApplyPush, LoggedEvent, Reset, SelectController, SetGain, SetPriority
+from momentum_lab.events import (
+    ApplyPush,
+    LoggedEvent,
+    MoveGround,
+    Reset,
+    SelectController,
+    SetGain,
+    SetPriority,
+)
+from momentum_lab.physics.plate import PlateMotion
 from momentum_lab.physics.push import Push
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
@@ -137,6 +146,24 @@ def test_what_cannot_be_done_is_refused_at_once_and_leaves_no_trace(talos, event
     run(session, 2)
     assert session.log == []
     assert bits(session) == bits(run(session_of(talos), 4))
+
+
+TILT = MoveGround(PlateMotion("pitch", 8.0, course="step", period=1.0))
+
+
+def test_what_waits_counts_when_the_next_is_asked_for(talos):
+    """Two tilts of 8 degrees in one pause: the second is refused as it comes, and the next tick is done."""
+    session = run(session_of(talos), 2)
+    session.post(TILT)
+    with pytest.raises(InputError, match="ground: got 16 degrees of pitch in all"):
+        session.post(TILT)
+    session.post(Reset())
+    session.post(TILT)  # on the ground of the start
+    session.tick()
+    assert [entry.event for entry in session.log] == [TILT, Reset(), TILT]
+    with pytest.raises(InputError, match="ground: got 16 degrees"):
+        session.check([SetPriority(0.5), TILT])
+    assert len(run(session, 1).log) == 3
 
 
 def test_reset_stands_the_robot_up_with_its_gains(g1):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from html import escape
 
+from momentum_lab.app.viser_page import ROW
+
 # Between two looks at a page that keeps changing, ms.
 _PERIOD = 500
 
@@ -17,7 +19,7 @@ _NAME = (
     "if(s&&s.ariaValueNow!==null)set(s,'aria-valuetext',text(words,s.ariaValueNow));"
     "const i=box.parentElement.querySelector('input:not([type=hidden])');"
     "if(box.tagName==='DIV'&&i)set(i,'aria-label',words+', typed')}"
-    "else{const g=l.closest('.mantine-Flex-root')?.lastElementChild;"
+    f"else{{const g=l.closest('{ROW}')?.lastElementChild;"
     "if(g&&g.querySelector('button')){set(g,'role','group');set(g,'aria-label',words)}}};"
     "const text=(words,now)=>{const u=/\\(([^)]*)\\)\\s*$/.exec(words);"
     "return String(+(+now).toPrecision(6))+(u?' '+u[1]:'')};"

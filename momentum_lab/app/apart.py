@@ -15,11 +15,11 @@ import msgspec
 from momentum_lab.app.birth import born
 from momentum_lab.errors import LabError, LessonError
 from momentum_lab.lesson.loader import load_lesson
+from momentum_lab.lesson.reading import READING_PATIENCE
 from momentum_lab.lesson.record import LessonRecord, rehearsed
 
-# How long a lesson's runs may take, and how long it may take to read its script, s.
+# How long a lesson's runs may take, s.
 _PATIENCE = 120.0
-_READING_PATIENCE = 30.0
 # A page that is being opened goes before scripts that are looked through.
 _NICE = 5
 
@@ -51,7 +51,7 @@ def faults(files: Sequence[Path]) -> Iterator[tuple[Path, str]]:
         with _process(_read, [str(file) for file in rest]) as listen:
             try:
                 while rest:
-                    words = listen(rest[0], _READING_PATIENCE).decode()
+                    words = listen(rest[0], READING_PATIENCE).decode()
                     yield rest.pop(0), words
             except LessonError as error:
                 # This one has brought its process to an end; the others are read in a new one.

@@ -64,6 +64,10 @@ class Appearance:
         colors = gui.add_button_group("colours", CHOICES, hint="Remembered by this browser.")
         colors.on_click(lambda event: self._choose(event.target.value))
 
+    def toggle(self) -> None:
+        """Dark if the page is light, light if it is dark; remembered like a choice of the view tab."""
+        self._choose("light" if self._settings.theme == "dark" else "dark")
+
     def add_ear(self, gui: viser.GuiApi) -> None:
         """Add what the page answers with, and ask it."""
         gui.add_html(HIDDEN_NEXT)

@@ -9,11 +9,11 @@ import viser
 
 from momentum_lab.app import html
 from momentum_lab.app.chosen import chosen_in
-from momentum_lab.app.differences import NOTHING, choices_in_words
 from momentum_lab.app.tuning_history import TuningHistory
 from momentum_lab.app.tuning_panel import changed_gains
 from momentum_lab.app.widgets import Post
 from momentum_lab.app.wire import Truth
+from momentum_lab.choice_words import NOTHING, choices_in_words
 from momentum_lab.choices import Choices
 from momentum_lab.control.gains import declared_gains, values_of
 from momentum_lab.control.registry import controller_entry

@@ -30,10 +30,14 @@ class Companion:
     Args:
         session: where the first session is, between two ticks.
         beside: what it does differently.
+        since: when it came, s of the run; what happened before is the first robot's.
+
+    Attributes:
+        since: the same; 0 once it has stood up again.
     """
 
-    def __init__(self, session: Session, beside: Beside) -> None:
-        self.session, self.beside = session, beside
+    def __init__(self, session: Session, beside: Beside, since: float = 0.0) -> None:
+        self.session, self.beside, self.since = session, beside, since
         self.stopped: str | None = None
         self.waiting: list[SessionEvent] = []
         self._timeline = Timeline(session)
@@ -41,14 +45,16 @@ class Companion:
     @classmethod
     def of(cls, first: Session, beside: Beside) -> Companion:
         """One that begins where the first session is now."""
-        return cls(fork(first, first.recording.capacity), beside)
+        session = fork(first, first.recording.capacity)
+        session.solver_failures = 0  # those before were the first one's
+        return cls(session, beside, first.time)
 
     def take(self, event: SessionEvent) -> None:
         """Do what the first robot is told to do, unless something else has been chosen for this one."""
         if self._is_for_both(event):
             self._post(event)
         if isinstance(event, Reset):
-            self.stopped = None
+            self.stopped, self.since = None, 0.0
 
     def align(self, first: Choices) -> None:
         """Make this robot's choices those of the first one, but for the differences."""
@@ -97,6 +103,7 @@ class Companion:
             failure=session.last_failure,
             failures=session.solver_failures,
             stopped=self.stopped,
+            since=self.since,
         )
 
     def _is_for_both(self, event: SessionEvent) -> bool:

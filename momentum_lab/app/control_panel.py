@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import viser
 
-from momentum_lab.app import html
+from momentum_lab.app import html, look_html
 from momentum_lab.app.bounds_panel import BoundsPanel
 from momentum_lab.app.changes_panel import ChangesPanel
 from momentum_lab.app.tuning_panel import TuningPanel
@@ -79,6 +79,7 @@ class ControlPanel:
         self._changes = ChangesPanel(gui, post, tell, truth)
         self._place = gui.add_form(None)  # where gains of another controller find the way back to
         with self._place:
+            gui.add_html(look_html.LEVEL)
             self._gains = TuningPanel(gui, post, tell, truth)
 
     def _add_scenario(self, choices: Choices, truth: Truth) -> None:

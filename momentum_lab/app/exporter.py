@@ -105,12 +105,13 @@ def finished(taken: RunTaken, robot: RobotModel | None = None) -> FinishedRun:
         taken.failures,
         taken.com_speed,
         None if taken.other is None else finished(taken.other, robot),
+        taken.since,
     )
 
 
 def _trace(run: FinishedRun) -> bytes:
     file = io.BytesIO()  # a process that is stopped in the middle would leave a folder behind
-    write_trace(run.recording, provenance(run), file)
+    write_trace(run.recording, provenance(run), file, None if run.beside is None else run.beside.recording)
     return file.getvalue()
 
 

@@ -15,6 +15,7 @@ HELP = """
 | **G** | show or hide A |
 | **T** · **Z** | a drag pushes the robot without Shift, or no longer · let go of it without a push |
 | **1** **2** **3** **4** **5** | the tabs Push, Control, View, Runs, Share |
+| **C** | a dark page, or a light one |
 | **I** · **U** | next step · previous step of a lesson (*Learn* tab, left) |
 | **X** | end the demonstration; so does any touch |
 | **H** | this help |

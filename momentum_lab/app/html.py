@@ -8,6 +8,7 @@ from html import escape
 
 from momentum_lab.app.marks import STYLES, MarkStyle
 from momentum_lab.app.steady import blanks, steady
+from momentum_lab.app.viser_page import DARK_PAGE, PHONE, SHEET
 
 # On a dark page the style sheet below gives these names lighter colours.
 COLORS = {
@@ -27,13 +28,13 @@ TITLE = (
     ".lab b{font-weight:600}.lab .n,.lab.n{font-variant-numeric:tabular-nums}"
     ".lab.small{padding:.3em .75em .1em .75em;font-size:.78em;line-height:1.3}"
     ".lab .dim{color:#6b6b6b}"
-    "[data-mantine-color-scheme=dark]{--lab-green:#3cc79a;--lab-orange:#f0a544;--lab-vermillion:#ff8a5b;"
+    f"{DARK_PAGE}{{--lab-green:#3cc79a;--lab-orange:#f0a544;--lab-vermillion:#ff8a5b;"
     "--lab-black:#e6e6e6}"
-    "[data-mantine-color-scheme=dark] .lab .dim{color:#a6a6a6}"
-    '[data-mantine-color-scheme=dark] .lab svg [fill="#000000"]{fill:#fff}'
-    '[data-mantine-color-scheme=dark] .lab svg [stroke="#000000"]{stroke:#fff}'
+    f"{DARK_PAGE} .lab .dim{{color:#a6a6a6}}"
+    f'{DARK_PAGE} .lab svg [fill="#000000"]{{fill:#fff}}'
+    f'{DARK_PAGE} .lab svg [stroke="#000000"]{{stroke:#fff}}'
     # Viser's sheet on a phone is as wide as 20 letters and leaves the rest of the row empty.
-    "@media(max-width:36em){[style*='width: 20em']{width:100vw!important}}</style>"
+    f"{PHONE}{{{SHEET}{{width:100vw!important}}}}</style>"
 )
 # A whole number of N or N m, and a place for three of its figures: the usual losses.
 _SIZE = re.compile(r"\b(\d+)(?= N\b)")

@@ -9,6 +9,7 @@ from typing import Any
 
 import viser
 
+from momentum_lab.app.appearance import Appearance
 from momentum_lab.app.hand import Hand
 from momentum_lab.app.hand_panel import MODIFIER
 from momentum_lab.app.help_page import HELP
@@ -32,6 +33,7 @@ def add_keys(
     tabs: Tabs,
     runs: RunsPanel,
     hand: Hand,
+    colours: Appearance,
 ) -> None:
     """Give a browser tab its keys; all of them are in the command palette too."""
     keys: tuple[tuple[str, Any, Callable[[], None]], ...] = (
@@ -49,6 +51,7 @@ def add_keys(
         ("Keep this run as A", "M", runs.keep),
         ("Same pushes again", "N", runs.run_again),
         ("Show or hide A", "G", runs.toggle_ghost),
+        ("Dark or light page", "C", colours.toggle),
         ("Push tab", "1", lambda: tabs.open(0)),
         ("Control tab", "2", lambda: tabs.open(1)),
         ("View tab", "3", lambda: tabs.open(2)),

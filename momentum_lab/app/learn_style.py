@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from momentum_lab.app.html import COLORS
+from momentum_lab.app.viser_page import DARK_PAGE, PHONE, SHEET, UNFOLDED
 
 BLUE, GREEN, RED = "#0072b2", COLORS["green"], COLORS["vermillion"]
 # On a dark page the style sheet below gives these names lighter colours.
@@ -12,8 +13,7 @@ LIST = '<span class="learn-list"></span>'
 WAY = '<span class="learn-way"></span>'
 """The button after it stays in sight on a phone."""
 
-_DARK_PAGE = "[data-mantine-color-scheme=dark]"
-_DARK = f"{_DARK_PAGE} .learn"
+_DARK = f"{DARK_PAGE} .learn"
 _TEXT = (
     ".learn{padding:.15em .9em .5em .9em;font-size:.95em;line-height:1.45}"
     ".learn h3{font-size:1.05em;margin:.1em 0 .25em 0;font-weight:650}"
@@ -40,19 +40,19 @@ _CHOICES = (
     "overflow:visible;padding:.3em .2em;line-height:1.3;font-weight:450;font-size:1.08em}"
 )
 _AT_NIGHT = (
-    f"{_DARK_PAGE}{{--learn-mine:#7cc4f0;--learn-ink:#f0f0f0;--learn-pale:#a6a6a6}}"
+    f"{DARK_PAGE}{{--learn-mine:#7cc4f0;--learn-ink:#f0f0f0;--learn-pale:#a6a6a6}}"
     f"{_DARK} .q,{_DARK} mtext{{color:#7cc4f0}}{_DARK} .dim{{color:#a6a6a6}}"
     f"{_DARK} .o{{border-color:#4a5057}}{_DARK} .o.mine{{background:#16384d}}"
     f"{_DARK} .bar{{background:#3a3f45}}{_DARK} .card{{background:#2b2f34}}"
-    f"{_DARK_PAGE} div:has(>.learn-list)~* button{{background:#2b2f34!important;color:#e4e7ea!important;"
-    f"border-color:#4a5057!important}}{_DARK_PAGE} div:has(>.learn-list)~* button:disabled"
+    f"{DARK_PAGE} div:has(>.learn-list)~* button{{background:#2b2f34!important;color:#e4e7ea!important;"
+    f"border-color:#4a5057!important}}{DARK_PAGE} div:has(>.learn-list)~* button:disabled"
     "{color:#a6a6a6!important}"
 )
 STYLE = f"<style>{_TEXT}{_CHOICES}{_AT_NIGHT}</style>"
-_SHEET = "[style*='width: 20em']>:last-child"
+_PANELS = f"{SHEET}>:last-child"
 ON_A_PHONE = (
-    f"<style>@media(max-width:36em){{{_SHEET}{{display:flex;flex-direction:column}}"
-    f"{_SHEET}>:has([aria-label^='Collapse panel']){{order:-1}}"
+    f"<style>{PHONE}{{{_PANELS}{{display:flex;flex-direction:column}}"
+    f"{_PANELS}>:has({UNFOLDED}){{order:-1}}"
     "div:has(>.learn-way)+div{position:sticky;bottom:0;z-index:2;background:var(--mantine-color-body)}}</style>"
 )
 """Once in a page: unfolded, this panel comes first in a phone's one sheet, and the way on stays in sight below."""

@@ -19,6 +19,7 @@ from momentum_lab.app.wire import (
     FrameTaken,
     FrameWanted,
     OpenRun,
+    RecordingWanted,
     RunTaken,
     RunWanted,
     TakeBack,
@@ -77,20 +78,30 @@ class Link:
         """Put the run on stage again that was there before another was opened."""
         self._send(packed(TakeBack()))
 
-    def take_run(self, recording: bool, patience: float = _LONG_PATIENCE) -> RunTaken:
-        """The run as it is now; somebody has to read frames meanwhile.
+    def take_run(self) -> RunTaken:
+        """The run as it is now, without samples; somebody has to read frames meanwhile.
+
+        Raises:
+            InputError: the session does not answer.
+        """
+        return self._take(RunWanted())
+
+    def take_recording(self, patience: float = _LONG_PATIENCE) -> RunTaken:
+        """The run as it is now, with the samples of both robots; somebody has to read frames meanwhile.
 
         Args:
-            recording: whether the samples are wanted too.
             patience: how long to wait, s.
 
         Raises:
             InputError: the session does not answer.
         """
+        return self._take(RecordingWanted(), patience)
+
+    def _take(self, wanted: RunWanted | RecordingWanted, patience: float = _LONG_PATIENCE) -> RunTaken:
         with self._asking:
             while not self._taken.empty():
                 self._taken.get()  # an answer that came too late for whoever asked
-            self._send(packed(RunWanted(recording)))
+            self._send(packed(wanted))
             try:
                 return self._taken.get(timeout=patience)
             except queue.Empty as error:

@@ -93,8 +93,8 @@ class Panels:
         group = gui.add_tab_group()  # five of them fit into one line without icons
         with group.add_tab("Push"):
             self.push = PushPanel(gui, post, tell, redraw)
-            SequencePanel(gui, post, tell, self.push, lambda: sharing.take(False).pushes)
-            pulling = Pulling(client, self.push, self.settings, post, lambda: sharing.take(False).pushes)
+            SequencePanel(gui, post, tell, self.push, lambda: sharing.take_run().pushes)
+            pulling = Pulling(client, self.push, self.settings, post, lambda: sharing.take_run().pushes)
             self.hand = Hand(self.push.hand, pulling, tell)
             self.ground = GroundPanel(gui, post, tell, feet)
         with group.add_tab("Control"):
@@ -119,7 +119,8 @@ class Panels:
         self._gui, self._group, self._roomy = gui, group, plan.roomy
         self.learn = LearnPanel(client, learn_tab, library, post, ask, tell, look, self._lesson_opened, truth)
         # The list of commands has them in this order: what is used most comes first.
-        add_keys(client, post, self._push, self.push, self.status, Tabs(client, group), self.runs, self.hand)
+        tabs = Tabs(client, group)
+        add_keys(client, post, self._push, self.push, self.status, tabs, self.runs, self.hand, appearance)
         self.learn.start(lesson)
         demo.listen()
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import msgspec
 
 from momentum_lab.app.beginnings import Forgetting, is_handled
@@ -9,7 +11,7 @@ from momentum_lab.app.companion import Companion
 from momentum_lab.app.foresight import Foresight
 from momentum_lab.app.opened import NOTHING_OPENED, OpenedRun
 from momentum_lab.app.restart import named_run, once_more, with_robot
-from momentum_lab.app.truth import Clock, taken_of, truth_of
+from momentum_lab.app.truth import Clock, recorded_of, taken_of, truth_of
 from momentum_lab.app.wire import Foreseen, OpenRun, RunTaken, Truth
 from momentum_lab.beside import Beside
 from momentum_lab.errors import InputError, SimulationError
@@ -165,13 +167,19 @@ class Playback:
         tick = self.session.ticks - self._behind - 1
         return self._forgetting.times(self.session, tick, self._opened.events) if self._behind else ()
 
-    def taken(self, recording: bool) -> RunTaken:
-        """The run as it is now, with the samples of both robots or without; the second is in its scenario."""
-        taken = taken_of(self.session, self._waiting, self._difference, recording)
-        if self.beside is None or not recording:
-            return taken
-        other = taken_of(self.beside.session, self.beside.waiting, None, recording)
-        return msgspec.structs.replace(taken, other=other)
+    def taken(self) -> RunTaken:
+        """The run as it is now, without samples; a second robot is in its scenario."""
+        return taken_of(self.session, self._waiting, self._difference)
+
+    def recorded(self) -> RunTaken:
+        """The run as it is now, with the samples of both robots."""
+        recorded = recorded_of(self.session, self._waiting, self._difference)
+        if self.beside is None:
+            return recorded
+        other = recorded_of(self.beside.session, self.beside.waiting, None)
+        return msgspec.structs.replace(
+            recorded, other=msgspec.structs.replace(other, since=self.beside.since)
+        )
 
     @property
     def _difference(self) -> Beside | None:
@@ -216,6 +224,10 @@ class Playback:
         if not self._behind:
             self.playing = self.stopped is None
             return
+        if not self._timeline.remembers(self._behind + 1):
+            self._pass_on(Reset())  # the first sample of a robot that was stood up: it is stood up again
+            self.playing = True
+            return
         chosen = self.session.choices_after(self._waiting)
         # The sample that is looked at is the first of the branch: it is simulated again, under the new choices.
         self._timeline.go_back(self._behind + 1)
@@ -230,10 +242,11 @@ class Playback:
         self.tick(1)
 
     def _cue(self) -> None:
-        """Let the robots do what was done at this tick of an opened run."""
+        """Let the robots do what was done at this tick of an opened run, as far as they can by now."""
         for event in self._opened.due(self.session):
-            self._post(event)
-            self.run += isinstance(event, Reset)
+            with suppress(InputError):  # another controller has no such gain: the run's end tells of it
+                self._post(event)
+                self.run += isinstance(event, Reset)
 
     def _post(self, event: SessionEvent) -> None:
         """Let the robots do something at the start of their next tick."""

@@ -14,6 +14,7 @@ from momentum_lab.app import cursor, html
 from momentum_lab.app.marks import STYLES
 from momentum_lab.app.second_curves import POINTS, curves_at
 from momentum_lab.app.series import WINDOW, Curves, History
+from momentum_lab.experiments.least_span import LEAST
 from momentum_lab.palette import ADMISSIBLE, ANGULAR, DESIRED, GREY, LINEAR, MEASURED, Color
 from momentum_lab.recording import Layout
 from momentum_lab.robot.model import RobotModel
@@ -32,10 +33,6 @@ _KINDS: dict[str, tuple[Color, list[int]]] = {
     "admissible": (ADMISSIBLE, []),
     "measured": (MEASURED, []),
 }
-
-
-# Every plot shows at least from minus this to this, in its unit.
-_SOFT = {"places": 12.0, "linear": 60.0, "angular": 30.0, "momenta": 6.0}
 
 
 class Plots:
@@ -61,20 +58,20 @@ class Plots:
             [_line(STYLES[name].label, STYLES[name].color) for name in _POINTS]
             + [_line("support", GREY, [3, 3]), _line("", GREY, [3, 3])]
             + [_kept_line(STYLES[name].color) for name in POINTS],
-            soft=_SOFT["places"],
+            soft=LEAST["places"],
             bands=({"series": (6, 5), "fill": "rgba(110,110,110,0.10)"},),
         )
         self._linear = _plot(
             gui,
             "Rate of linear momentum along the push (N)",
             [*_rates(), _kept_line(MEASURED)],
-            soft=_SOFT["linear"],
+            soft=LEAST["linear"],
         )
         self._angular = _plot(
             gui,
             "Rate of angular momentum about the axis across (N m)",
             [*_rates(), _kept_line(MEASURED)],
-            soft=_SOFT["angular"],
+            soft=LEAST["angular"],
         )
         self._momenta = _plot(
             gui,
@@ -85,7 +82,7 @@ class Plots:
                 _kept_line(LINEAR),
                 _kept_line(ANGULAR),
             ],
-            soft=_SOFT["momenta"],
+            soft=LEAST["momenta"],
         )
 
         # Plots, and what a robot beside the first adds to them: behind all others, so that those stay as they are.
@@ -211,7 +208,7 @@ def at_rest(curves: Curves) -> bool:
         "momenta": [curves.momentum, curves.angular_momentum],
     }
     return not curves.pushed.any() and all(
-        np.ptp(values) < _SAME * _SOFT[plot] for plot, ys in lines.items() for values in ys
+        np.ptp(values) < _SAME * LEAST[plot] for plot, ys in lines.items() for values in ys
     )
 
 

@@ -8,6 +8,8 @@ from collections.abc import Callable, Sequence
 
 import viser
 
+from momentum_lab.app.viser_page import ROW
+
 # How often the marks move while time runs, s.
 _PERIOD = 1.0
 # The slider's row: what stands right of its track, and left of it, in its own lengths.
@@ -15,7 +17,7 @@ _LEFT, _RIGHT = "calc(var(--mantine-spacing-xs) + 4px)", "calc(3rem + 2 * var(--
 _PUSH = "var(--mantine-color-dimmed)"
 # The words of the slider go into this line, and their place to the slider itself.
 _WIDE = (
-    "<style>div:has(>.lab-look)+* .mantine-Flex-root>div:has(>*>label){"
+    f"<style>div:has(>.lab-look)+* {ROW}>div:has(>*>label){{"
     "width:0!important;height:0;padding:0!important;overflow:hidden}</style>"
 )
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from momentum_lab.app.differences import names_of_chosen
 from momentum_lab.app.overlays import Picture
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.side_scene import to_the_left
+from momentum_lab.choice_words import names_of_chosen
 from momentum_lab.effects import ground_after
 from momentum_lab.errors import InputError
 from momentum_lab.events import Reset

@@ -12,11 +12,12 @@ import msgspec
 import viser
 
 from momentum_lab.app import html
-from momentum_lab.app.differences import NOTHING
+from momentum_lab.app.differences import LAY_THERE
 from momentum_lab.app.story import Facts
 from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
 from momentum_lab.beside import Beside
+from momentum_lab.choice_words import NOTHING
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.events import RunAgain, SetBeside
 from momentum_lab.palette import BLUE, VERMILLION
@@ -197,6 +198,8 @@ def _row(name: str, values: tuple[str, ...]) -> str:
 
 
 def _result(facts: Facts) -> str:
+    if facts.lay_there:
+        return LAY_THERE
     return "stands" if facts.fall_time is None else f"fell after {facts.fall_time:.2f} s"
 
 

@@ -19,6 +19,7 @@ from momentum_lab.app.birth import warm_up
 from momentum_lab.app.control_panel import Choices
 from momentum_lab.app.first_pose import FirstPose
 from momentum_lab.app.library import Library
+from momentum_lab.app.parting import part
 from momentum_lab.app.profile import NORMAL, RenderProfile
 from momentum_lab.app.quiet import quiet
 from momentum_lab.app.robots import RobotShelf
@@ -105,6 +106,7 @@ class LabServer:
     def close(self) -> None:
         """End all sessions and give the port back."""
         with quiet():
+            part(self._viser)
             self._viser.stop()
         for visitor in self.visitors:
             visitor.close()

@@ -36,6 +36,7 @@ _FILES = {
     "film (.mp4)": ("film", ".mp4"),
     "small film (.mp4)": ("small film", ".mp4"),
 }
+_WITHOUT_SAMPLES = ("run", "view")
 _IN_SIGHT = "This tab draws it: keep it in sight; its own picture stands still."
 # Height of a film, pixels.
 _FILMS = {"film": 720, "small film": 360}
@@ -46,7 +47,8 @@ class Sharing:
     """What the share tab can ask for.
 
     Attributes:
-        take: the run as it is now, with its recording or without.
+        take_run: the run as it is now, without samples.
+        take_recording: the run as it is now, with the samples of both robots.
         open: starts a run.
         tell: shows a person what was wrong.
         send: lets the browser save a file of a name.
@@ -59,7 +61,8 @@ class Sharing:
         warn: tells a person what is wrong, until it is closed: a page that loads may take longer than a notice.
     """
 
-    take: Callable[[bool], RunTaken]
+    take_run: Callable[[], RunTaken]
+    take_recording: Callable[[], RunTaken]
     open: Callable[[Run], None]
     tell: Callable[[str], None]
     send: Callable[[str, bytes], None]
@@ -104,8 +107,7 @@ class SharePanel:
         self._what = gui.add_dropdown(
             "file",
             tuple(_FILES),
-            hint="All but the run file hold the last minute since the robot stood up. Pictures, recordings and "
-            "films show both robots, the others the first.",
+            hint="All but the run file hold the last minute since the robot stood up. All hold both robots.",
         )
         self._download = gui.add_button("Download", color="gray", icon=viser.Icon.DOWNLOAD)
         self._progress = gui.add_html("", visible=False)
@@ -138,7 +140,7 @@ class SharePanel:
             self._busy.release()
 
     def _make_code(self) -> None:
-        code = to_code(self._sharing.take(False).run)
+        code = to_code(self._sharing.take_run().run)
         self._code.content = share_html.code(code, link(self._sharing.url, code))
 
     def _open_code(self, text: str) -> None:
@@ -168,7 +170,8 @@ class SharePanel:
         self._download.disabled = True
         try:
             self._show(f"{self._what.value}: being made, the run goes on.")
-            taken = self._sharing.take(kind not in ("run", "view"))
+            take = self._sharing.take_run if kind in _WITHOUT_SAMPLES else self._sharing.take_recording
+            taken = take()
             self._sharing.send(file_name(taken.run) + end, self._content(kind, taken))
         finally:
             self._download.disabled = False

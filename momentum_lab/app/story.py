@@ -24,11 +24,12 @@ class Facts:
 
     Attributes:
         seconds: simulated time of its last sample, s.
-        fall_time: when the robot fell, s after the latest push before; None while it stands.
+        fall_time: when the robot fell, s after the latest push before; None without a fall of its own.
         excursion: largest horizontal distance of the CoM from its start, m.
         angular_momentum: largest |k| about the CoM, kg m^2/s.
         settled_after: how long after the beginning of its latest push the CoM came to rest, s; None if it has not.
         margin: smallest distance of the CoP from the edge of the support until a fall, m; None without support.
+        lay_there: whether it had fallen already when it came beside another; its fall is not its own then.
     """
 
     seconds: float
@@ -37,6 +38,7 @@ class Facts:
     angular_momentum: float
     settled_after: float | None
     margin: float | None
+    lay_there: bool = False
 
 
 class Story:
@@ -85,11 +87,12 @@ class Story:
         margins = margins[np.isfinite(margins)]
         return Facts(
             seconds=self._times[-1],
-            fall_time=None if truth.fall is None else truth.fall.time - _pushed(truth, truth.fall.time),
+            fall_time=_fell_after(truth),
             excursion=float(np.linalg.norm(com - com[0], axis=1).max()),
             angular_momentum=float(np.linalg.norm(angular, axis=1).max()),
             settled_after=None if truth.fall is not None else self._settled(rows, _pushed(truth, math.inf)),
             margin=float(margins.min()) if margins.size else None,
+            lay_there=truth.lay_there,
         )
 
     def posture(self, time: float) -> np.ndarray:
@@ -123,6 +126,13 @@ class Story:
     def _keep(self, start: int, end: int) -> None:
         for kept in (self._times, self._rows, self._margins):
             del kept[end:], kept[:start]
+
+
+def _fell_after(truth: Truth) -> float | None:
+    """How long after the latest push the robot fell, s; None without a fall of its own."""
+    if truth.fall is None or truth.lay_there:
+        return None
+    return truth.fall.time - _pushed(truth, truth.fall.time)
 
 
 def _pushed(truth: Truth, time: float) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from momentum_lab.active_bounds import bounds_of
 from momentum_lab.app.bounds_panel import situation_of
-from momentum_lab.app.differences import names_of
+from momentum_lab.app.differences import LAY_THERE, names_of
 from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.wire import Frame, Truth, rows_of
 from momentum_lab.fall import Fall
@@ -53,6 +53,8 @@ def _one(truth: Truth, sample: Sample, loaded: LoadedRobot) -> Status:
 
 def _short(status: Status, truth: Truth) -> str:
     """What matters of a status where there is room for half a line."""
+    if status.kind == "fallen" and truth.lay_there:
+        return LAY_THERE
     if status.kind == "fallen" and truth.fall is not None:
         return f"fell at {truth.fall.time:.2f} s"
     if status.kind == "border":

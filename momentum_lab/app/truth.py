@@ -88,10 +88,8 @@ def truth_of(
     )
 
 
-def taken_of(
-    session: Session, waiting: Sequence[SessionEvent], beside: Beside | None, recording: bool
-) -> RunTaken:
-    """The run as it is now, with its samples or without; what waits for the next tick counts as done.
+def taken_of(session: Session, waiting: Sequence[SessionEvent], beside: Beside | None) -> RunTaken:
+    """The run as it is now, without samples; what waits for the next tick counts as done.
 
     A robot beside the first is in its scenario.
     """
@@ -99,13 +97,19 @@ def taken_of(
     scenario = msgspec.structs.replace(run.scenario, beside=beside)
     return RunTaken(
         run=msgspec.structs.replace(run, scenario=scenario),
-        rows=session.recording.rows().tobytes() if recording else b"",
+        rows=b"",
         time=session.time,
         pushes=session.pushes_after(waiting),
         fall=_fallen(session, session.time),
         failures=session.solver_failures,
         com_speed=com_speed(session),
     )
+
+
+def recorded_of(session: Session, waiting: Sequence[SessionEvent], beside: Beside | None) -> RunTaken:
+    """The run as it is now, with all samples that are kept."""
+    rows = session.recording.rows().tobytes()
+    return msgspec.structs.replace(taken_of(session, waiting, beside), rows=rows)
 
 
 def _fallen(session: Session, time: float) -> Fallen | None:

@@ -213,6 +213,7 @@ class Visitor:
     def _sharing(self) -> Sharing:
         return Sharing(
             self._link.take_run,
+            self._link.take_recording,
             self._link.open,
             self.tell,
             lambda name, content: self._client.send_file_download(name, content, save_immediately=True),

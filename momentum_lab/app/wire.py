@@ -35,9 +35,11 @@ class TakeBack(msgspec.Struct, frozen=True, tag=True):
 
 
 class RunWanted(msgspec.Struct, frozen=True, tag=True):
-    """What has been done so far has to be told, with the recording or without."""
+    """What has been done so far has to be told."""
 
-    recording: bool
+
+class RecordingWanted(msgspec.Struct, frozen=True, tag=True):
+    """What has been done so far has to be told, with all samples."""
 
 
 class Fallen(msgspec.Struct, frozen=True):
@@ -94,6 +96,7 @@ class Truth(msgspec.Struct, frozen=True):
         opened: the run that has been opened; None when it is no opened run that plays.
         pushed: when pushes have begun since the robot stood up, until the end of the run, s.
         forgotten: those of them that going on from what is looked at would not repeat, s.
+        since: when this robot came beside another, s of the run; what fell before has not fallen by itself.
     """
 
     run: int
@@ -125,6 +128,12 @@ class Truth(msgspec.Struct, frozen=True):
     opened: Opened | None = None
     pushed: tuple[float, ...] = ()
     forgotten: tuple[float, ...] = ()
+    since: float = 0.0
+
+    @property
+    def lay_there(self) -> bool:
+        """Whether the robot had fallen already when it came."""
+        return self.fall is not None and self.fall.time < self.since
 
 
 class Other(msgspec.Struct, frozen=True):
@@ -199,6 +208,7 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
         failures: how many solves have failed.
         com_speed: of the CoM against the ground under the feet at the end, m/s.
         other: the robot beside the first; None when there is none, or no samples were wanted.
+        since: when this robot came, s of the run.
     """
 
     run: Run
@@ -209,14 +219,15 @@ class RunTaken(msgspec.Struct, frozen=True, tag=True):
     failures: int
     com_speed: float
     other: RunTaken | None = None
+    since: float = 0.0
 
 
-Message = events.Event | LessonEvent | DemoEvent | FrameTaken | FrameWanted | OpenRun | TakeBack | RunWanted
+Asked = FrameTaken | FrameWanted | OpenRun | TakeBack | RunWanted | RecordingWanted
+Message = events.Event | LessonEvent | DemoEvent | Asked
 Answer = Frame | RunTaken
 
 _encoder = msgspec.msgpack.Encoder()
 _message_decoder = msgspec.msgpack.Decoder(Message)
-_frame_decoder = msgspec.msgpack.Decoder(Frame)
 _answer_decoder = msgspec.msgpack.Decoder(Answer)
 
 
@@ -228,11 +239,6 @@ def packed(message: Message | Answer) -> bytes:
 def unpacked_message(data: bytes) -> Message:
     """The message that `packed` has written."""
     return _message_decoder.decode(data)
-
-
-def unpacked_frame(data: bytes) -> Frame:
-    """The frame that `packed` has written."""
-    return _frame_decoder.decode(data)
 
 
 def unpacked_answer(data: bytes) -> Answer:

@@ -28,6 +28,7 @@ from momentum_lab.app.wire import (
     FrameWanted,
     OpenRun,
     Other,
+    RecordingWanted,
     RunWanted,
     TakeBack,
     Truth,
@@ -132,9 +133,11 @@ class Worker:
                 self._taken = True
             case FrameWanted():
                 self._news = True
-            case RunWanted(recording):
-                self._connection.send_bytes(packed(self._playback.taken(recording)))
-                self._pacer.start(self._clock(), self._playback.speed)  # a long recording takes its time
+            case RunWanted():
+                self._connection.send_bytes(packed(self._playback.taken()))
+            case RecordingWanted():
+                self._connection.send_bytes(packed(self._playback.recorded()))
+                self._pacer.start(self._clock(), self._playback.speed)  # a long one takes its time
             case _:
                 self._take(message)
 

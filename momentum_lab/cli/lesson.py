@@ -10,9 +10,10 @@ from rich.table import Table
 
 from momentum_lab.cli.progress import interruptible, progress
 from momentum_lab.experiments.claims import Claim
-from momentum_lab.lesson.loader import find_lesson, lesson_folder, load_lesson
+from momentum_lab.lesson.loader import find_lesson, lesson_folder
 from momentum_lab.lesson.parts import Choice, Explain, Lesson, Number, Step
 from momentum_lab.lesson.playing import Played, play_lesson, report, told
+from momentum_lab.lesson.reading import read_lesson
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.scenario import changed, load_scenario
 from momentum_lab.session import Session
@@ -27,7 +28,7 @@ def lesson(args: Namespace) -> int:
         InputError: there is no such lesson or robot, or the lesson's script has an error in it.
         KeyboardInterrupt: Ctrl+C.
     """
-    chosen = load_lesson(find_lesson(args.name, lesson_folder(args.lessons)))
+    chosen = read_lesson(find_lesson(args.name, lesson_folder(args.lessons)))
     if args.headless or args.json:
         return _headless(chosen, args)
     return _in_browser(chosen, args)

@@ -19,7 +19,8 @@ from momentum_lab.control.planner import PLANNERS
 from momentum_lab.control.presets import presets
 from momentum_lab.control.registry import CONTROLLERS, controller_entry
 from momentum_lab.errors import InputError, LabError
-from momentum_lab.lesson.loader import lesson_files, lesson_folder, load_lesson
+from momentum_lab.lesson.loader import lesson_files, lesson_folder
+from momentum_lab.lesson.reading import read_lesson
 from momentum_lab.paths import LESSONS
 from momentum_lab.robot.catalog import load_spec, robot_names
 from momentum_lab.scenario import load_scenario, scenario_names
@@ -94,7 +95,7 @@ def lessons(folder: Path) -> tuple[Things, list[LabError]]:
     found, faults = [], []
     for path in lesson_files(folder):
         try:
-            lesson = load_lesson(path)
+            lesson = read_lesson(path)
         except LabError as error:
             faults.append(error)
             continue

@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 from momentum_lab.cli.choices import chosen_run
+from momentum_lab.cli.finished import finished
 from momentum_lab.cli.progress import progress
-from momentum_lab.cli.run import played, played_beside
 from momentum_lab.errors import InputError
-from momentum_lab.finished import FinishedRun
-from momentum_lab.headless import Timing
-from momentum_lab.run_file import Run
-from momentum_lab.session import Session
 from momentum_lab.trace import writable_file, write_whole
 
 _ENDINGS = ".html (plays in any browser) or .viser (for viser's player)"
@@ -31,11 +25,7 @@ def record(args: Namespace) -> int:
         KeyboardInterrupt: Ctrl+C; no recording is written.
     """
     out = _out(args.out)
-    chosen = chosen_run(args)
-    run, error = _finished(chosen, played)
-    if chosen.scenario.beside is not None:
-        beside, problem = _finished(chosen, played_beside)
-        run, error = replace(run, beside=beside), error or problem
+    run, error = finished(chosen_run(args))
 
     from momentum_lab.app.recorder import html_file, viser_file  # loads viser
 
@@ -44,16 +34,6 @@ def record(args: Namespace) -> int:
         write_whole(out, make(run, report))
     print(f"recording: {out}")
     return 0 if error is None else 1
-
-
-def _finished(
-    chosen: Run, play: Callable[[Run], tuple[Session, Timing, bool]]
-) -> tuple[FinishedRun, str | None]:
-    """One robot's run, and why it ended before its time; None when it did not."""
-    session, timing, stopped = play(chosen)
-    if stopped:
-        raise KeyboardInterrupt
-    return FinishedRun.of(session), timing.error
 
 
 def _out(given: str | None) -> Path:

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 from argparse import Namespace
 from pathlib import Path
 
 from momentum_lab.cli.choices import chosen_run
-from momentum_lab.cli.run import played
+from momentum_lab.cli.finished import finished
 from momentum_lab.errors import InputError
-from momentum_lab.finished import FinishedRun
 from momentum_lab.trace import writable_file, write_whole
 
 
 def report(args: Namespace) -> int:
-    """Run a scenario or a code and write its report.
+    """Run a scenario or a code and write its report, of two robots side by side.
 
     Returns:
         0, or 1 if the simulation broke down on the way: the report then shows what there is.
@@ -27,14 +25,10 @@ def report(args: Namespace) -> int:
         raise InputError("--out", "nothing", "the path of an .html file")
     chosen = chosen_run(args)
     out = writable_file(Path(args.out))
-    if chosen.scenario.beside is not None:
-        print(f"momentum-lab: {out} shows the first robot; its code holds both", file=sys.stderr)
-    session, timing, stopped = played(chosen)
-    if stopped:
-        raise KeyboardInterrupt
+    run, error = finished(chosen)
 
     from momentum_lab.experiments.run_report import report as written  # loads matplotlib
 
-    write_whole(out, written(FinishedRun.of(session)))
+    write_whole(out, written(run))
     print(f"report: {out}")
-    return 0 if timing.error is None else 1
+    return 0 if error is None else 1

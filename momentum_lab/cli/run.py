@@ -34,10 +34,10 @@ _MOST_BOUNDS = 5
 def run(args: Namespace) -> int:
     """Run a scenario, save its trace if asked to, print its summary.
 
-    A scenario with two robots is run for both; the trace is the first one's, and so is the summary, which holds
-    that of the other. A simulation that breaks down (its state is not finite any more) is reported on stderr
-    with exit code 1; what was recorded before is saved and summarized, as a fall. Ctrl+C saves what there is and
-    prints no summary.
+    A scenario with two robots is run for both, one after the other; trace and summary are the first one's and hold
+    those of the other. A simulation that breaks down (its state is not finite any more) is reported on stderr with
+    exit code 1; what was recorded before is saved and summarized, as a fall. Ctrl+C saves what there is, of the
+    second robot nothing, and prints no summary.
 
     Raises:
         InputError: something that was typed cannot be used.
@@ -56,7 +56,9 @@ def run(args: Namespace) -> int:
         _note(said(end_agreement(chosen, session)))
     summary = summarize(session, timing)
     if second is not None:
-        summary = msgspec.structs.replace(summary, beside=_beside(second, chosen, out))
+        summary = msgspec.structs.replace(summary, beside=_beside(second, chosen))
+        if out is not None:
+            save_trace(session.recording, provenance(session), out, second.session.recording)
     if args.json:
         print(msgspec.json.encode(summary).decode())
     else:
@@ -124,15 +126,13 @@ def played_beside(chosen: Run) -> tuple[Session, Timing, bool]:
     return second.session, *_timed(second.session, second.cue, chosen.length)
 
 
-def _beside(second: Second, chosen: Run, out: Path | None) -> Summary:
+def _beside(second: Second, chosen: Run) -> Summary:
     """Run the robot beside the first one.
 
     Raises:
         SimulationError: the simulation broke down before its first sample.
         KeyboardInterrupt: Ctrl+C.
     """
-    if out is not None:
-        _note(f"{out} holds the first robot; the one beside it is in the summary only")
     timing, stopped = _timed(second.session, second.cue, chosen.length)
     if stopped:
         raise KeyboardInterrupt

@@ -12,7 +12,8 @@ from momentum_lab.control.computed_torque_gains import ComputedTorqueGains
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_momentum_rate
 from momentum_lab.control.fallback import NO_FOOT, hold_posture, in_words, without_ground
-from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds, StanceFeet
+from momentum_lab.control.foot_forces import FootForces, ForceBounds, LoadSharing
+from momentum_lab.control.footing import Footing, StanceFeet
 from momentum_lab.control.planner import OWN, PLANNERS, Support
 from momentum_lab.control.priority import Compromise
 from momentum_lab.control.turning_back import balanced
@@ -53,6 +54,7 @@ class ComputedTorque:
         self.robot = robot
         self.timestep = timestep
         self.footing = Footing(robot)
+        self._sharing = LoadSharing(robot)
         self._programs: dict[tuple[int, ...], AccelerationProgram] = {}
 
     def initial_memory(self, dynamics: Dynamics) -> JointCommand:
@@ -135,7 +137,7 @@ class ComputedTorque:
             normal_moment=YAW_LEVER * gains.friction,
             least_force=gains.least_foot_force * self.robot.mass * GRAVITY,
         )
-        return self.footing.share(stance, balance.force, balance.angular_rate, bounds)
+        return self._sharing.share(stance, balance.force, balance.angular_rate, bounds)
 
     def _cop(self, dynamics: Dynamics, stance: StanceFeet, feet: FootForces) -> np.ndarray:
         """CoP of the admissible wrenches (2,), m (Eq. 21)."""

@@ -14,23 +14,18 @@ from functools import lru_cache
 
 import numpy as np
 
-from momentum_lab.control.foot_places import near_the_ground, placed_feet
 from momentum_lab.control.foot_programs import (
     cop_program,
     foot_wrenches,
     force_program,
     quiet_share,
 )
+from momentum_lab.control.footing import StanceFeet
 from momentum_lab.control.qp import CERTIFIED, QuadraticProgram, solve
-from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.momentum.ground import GRAVITY
-from momentum_lab.momentum.support import inset_rectangle
 from momentum_lab.momentum.wrench import cross
 from momentum_lab.robot.model import RobotModel
-from momentum_lab.robot.state import Dynamics
 
-# A sole this far above the ground, m, is no longer counted on; contact itself lifts less.
-_IN_THE_AIR = 0.005
 FACETS = 8
 # Stage 1: weights of the angular rate against the force, and of small forces against both.
 _ANGULAR_WEIGHT = 0.02
@@ -38,50 +33,6 @@ _SMALL_FORCE_WEIGHT = 1e-4
 # Stage 2: what a metre of CoP shift and a newton metre of normal moment cost, against a newton metre of error.
 _COP_SHIFT_WEIGHT = 0.03
 _NORMAL_MOMENT_WEIGHT = 0.003
-
-
-@dataclass(frozen=True, slots=True)
-class SafeSoles:
-    """The S stance soles without a border, and the ankles above them; the same in every tick.
-
-    Attributes:
-        names: how the feet are called.
-        indices: which feet they are (S,).
-        lower: rear right corners from the ankles, sole axes (S, 2), m.
-        upper: front left corners likewise (S, 2), m.
-        corners: corners in the sole frames, counter-clockwise (S, 4, 2), m.
-        ankles: the ankles in the sole frames (S, 3), m.
-    """
-
-    names: tuple[str, ...]
-    indices: np.ndarray
-    lower: np.ndarray
-    upper: np.ndarray
-    corners: np.ndarray
-    ankles: np.ndarray
-
-
-@dataclass(frozen=True, slots=True)
-class StanceFeet:
-    """The S feet that carry the robot, as the controller sees them.
-
-    Attributes:
-        index: which feet.
-        safe: their soles without a border, and their ankles.
-        com_to_sole: from the CoM to the sole origins, world axes (S, 3), m.
-        com_to_ankle: from the CoM to the ankles, world axes (S, 3), m.
-        rotation: axes of the soles in the world (S, 3, 3).
-        safe_polygon: support polygon of the safe rectangles, counter-clockwise (K, 2), m.
-        height: mean height of the sole origins in the world, m.
-    """
-
-    index: tuple[int, ...]
-    safe: SafeSoles
-    com_to_sole: np.ndarray
-    com_to_ankle: np.ndarray
-    rotation: np.ndarray
-    safe_polygon: np.ndarray
-    height: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,57 +63,16 @@ class FootForces:
     momentum_rate: np.ndarray
 
 
-class Footing:
-    """The feet of a robot as places where the ground can push back.
+class LoadSharing:
+    """The load of a robot shared out among its feet.
 
     Args:
         robot: the robot.
     """
 
     def __init__(self, robot: RobotModel) -> None:
-        self.mass = robot.mass
-        self.soles = robot.soles
+        self._weight = robot.mass * GRAVITY
         self._every_foot = tuple(range(len(robot.soles)))
-        self.ankles = np.array(
-            [robot.model.frames[sole.frame].placement.inverse().translation for sole in robot.soles]
-        )
-        self._lower = np.array([sole.lower for sole in robot.soles])
-        self._upper = np.array([sole.upper for sole in robot.soles])
-        self._safe_soles = lru_cache(maxsize=16)(self._inset)
-
-    def stance_feet(self, dynamics: Dynamics, stance: tuple[int, ...], border: float) -> StanceFeet:
-        """The stance feet with what is left of their soles without a border (m)."""
-        safe = self._safe_soles(stance, border)
-        placed = placed_feet(
-            safe.indices,
-            dynamics.sole_position,
-            dynamics.sole_rotation,
-            dynamics.com_in_world,
-            safe.ankles,
-            safe.corners,
-        )
-        return StanceFeet(stance, safe, *placed)
-
-    def on_the_ground(
-        self, dynamics: Dynamics, stance: tuple[int, ...], ground: FootGround
-    ) -> tuple[int, ...]:
-        """The stance feet whose soles are near the ground: a foot in the air carries nothing.
-
-        Args:
-            dynamics: the state with everything computed.
-            stance: the feet that are meant to carry, as indices.
-            ground: the plates under the feet.
-        """
-        near = near_the_ground(
-            dynamics.sole_position,
-            dynamics.sole_rotation,
-            self._lower,
-            self._upper,
-            ground.position,
-            ground.rotation,
-            _IN_THE_AIR,
-        ).tolist()
-        return tuple([foot for foot in stance if near[foot]])
 
     def share(
         self, feet: StanceFeet, force: np.ndarray, angular_rate: np.ndarray, bounds: ForceBounds
@@ -207,14 +117,14 @@ class Footing:
             _SMALL_FORCE_WEIGHT,
             _COP_SHIFT_WEIGHT,
             _NORMAL_MOMENT_WEIGHT,
-            self.mass * GRAVITY,
+            self._weight,
             CERTIFIED,
         )
 
     def _recombine(self, feet: StanceFeet, forces: np.ndarray, sole_moments: np.ndarray) -> FootForces:
         """Wrenches about the sole origins and the momentum rate they cause (Eqs. 1, 2)."""
         carried, rate = foot_wrenches(
-            forces, sole_moments, feet.rotation, feet.safe.ankles, feet.com_to_sole, self.mass * GRAVITY
+            forces, sole_moments, feet.rotation, feet.safe.ankles, feet.com_to_sole, self._weight
         )
         return self._of_all(feet, carried, rate)
 
@@ -222,24 +132,9 @@ class Footing:
         """With zero wrenches for the feet that do not carry."""
         if feet.index == self._every_foot:
             return FootForces(carried, rate)
-        wrench = np.zeros((len(self.soles), 6))
+        wrench = np.zeros((len(self._every_foot), 6))
         wrench[list(feet.index)] = carried
         return FootForces(wrench, rate)
-
-    def _inset(self, stance: tuple[int, ...], border: float) -> SafeSoles:
-        soles, ankles = [self.soles[foot] for foot in stance], self.ankles[list(stance)]
-        rectangles = [inset_rectangle(sole.lower, sole.upper, border) for sole in soles]
-        lower, upper = (np.array(corner) for corner in zip(*rectangles, strict=True))
-        (rear, right), (front, left) = lower.T, upper.T
-        corners = np.stack([(rear, right), (front, right), (front, left), (rear, left)]).transpose(2, 0, 1)
-        return SafeSoles(
-            names=tuple(sole.name for sole in soles),
-            indices=np.array(stance),
-            lower=lower - ankles[:, :2],
-            upper=upper - ankles[:, :2],
-            corners=corners.copy(),
-            ankles=ankles,
-        )
 
 
 def _single_cop(

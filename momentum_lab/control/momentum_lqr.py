@@ -89,6 +89,7 @@ def momentum_feedback(point: OperatingPoint, costs: LqrCosts) -> np.ndarray:
     worst_spin = costs.spin * point.mass * height**2 / 3.0
     worst_state = np.repeat([costs.position, costs.velocity * point.mass, worst_spin], 3)
     worst_wrench = costs.force * weight * np.tile([1.0, 1.0, 1.0, _LEVER, _LEVER, _LEVER], len(point.arms))
-    R = worst_wrench**-2.0
-    S = solve_continuous_are(A, B, np.diag(worst_state**-2.0), np.diag(R))
-    return A - B @ (B.T @ S / R[:, None])
+    # In parts of what is worst both weights are 1; in SI the equation is too ill-conditioned for some costs.
+    A, B = A * worst_state / worst_state[:, None], B * worst_wrench / worst_state[:, None]
+    S = solve_continuous_are(A, B, np.eye(len(A)), np.eye(len(worst_wrench)))
+    return (A - B @ (B.T @ S)) * worst_state[:, None] / worst_state

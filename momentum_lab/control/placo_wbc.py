@@ -10,7 +10,7 @@ from momentum_lab.control import common_gains
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_linear_rate
 from momentum_lab.control.fallback import NO_FOOT, hold_posture, in_words, without_ground
-from momentum_lab.control.foot_forces import Footing
+from momentum_lab.control.footing import Footing
 from momentum_lab.control.gains import gain
 from momentum_lab.control.placo_tasks import Law, PlacoTasks, TaskLaws
 from momentum_lab.errors import SolverError

@@ -85,6 +85,15 @@ def controller_entry(name: str) -> ControllerEntry:
     return CONTROLLERS[name]
 
 
+def planner_above(controller: str, wanted: str) -> str:
+    """The wanted planner if it may stand above a controller, or else the controller's own way.
+
+    Raises:
+        InputError: there is no such controller.
+    """
+    return wanted if wanted in controller_entry(controller).planners else OWN
+
+
 def check_planner(name: str, controller: str) -> str:
     """The name, if that planner may stand above that controller.
 

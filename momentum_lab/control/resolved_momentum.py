@@ -9,7 +9,7 @@ import pinocchio as pin
 
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.fallback import NO_FOOT, hold_posture, in_words, without_ground
-from momentum_lab.control.foot_forces import Footing
+from momentum_lab.control.footing import Footing
 from momentum_lab.control.gains import gain
 from momentum_lab.control.held_feet import holding_torque, motion_of_held_feet, weight_on_feet
 from momentum_lab.control.placo_rates import MomentumGoal, PlacoRates

@@ -9,7 +9,7 @@ import numpy as np
 from momentum_lab.control import common_gains
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.fallback import NO_FOOT, hold
-from momentum_lab.control.foot_forces import Footing
+from momentum_lab.control.footing import Footing
 from momentum_lab.control.gains import gain
 from momentum_lab.control.outputs import (
     LiftedSoles,

@@ -13,7 +13,7 @@ import numpy as np
 
 from momentum_lab.compiled import compiled
 from momentum_lab.control.controller import Reference
-from momentum_lab.control.foot_forces import StanceFeet
+from momentum_lab.control.footing import StanceFeet
 from momentum_lab.control.planner import OWN
 from momentum_lab.control.priority import Compromise, compromise
 from momentum_lab.momentum.directions import ALL

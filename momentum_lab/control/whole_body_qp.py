@@ -14,7 +14,7 @@ from momentum_lab.control import common_gains
 from momentum_lab.control.controller import ControlOutput, Reference
 from momentum_lab.control.desired import desired_angular_rate, desired_linear_rate
 from momentum_lab.control.fallback import NO_FOOT, hold
-from momentum_lab.control.foot_forces import Footing
+from momentum_lab.control.footing import Footing
 from momentum_lab.control.gains import gain
 from momentum_lab.control.momentum_lqr import LqrCosts
 from momentum_lab.control.outputs import (

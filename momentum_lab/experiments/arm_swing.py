@@ -36,7 +36,7 @@ def spin(session: Session) -> np.ndarray:
 
 def unmet(session: Session) -> np.ndarray:
     """What k has more than is asked for (n, 3), N m s."""
-    asked = np.array([session.angular_momentum_asked(time) for time in times(session)])
+    asked = np.array([session.steering.angular_momentum_asked(time) for time in times(session)])
     return np.asarray(session.recording.column("momentum")[:, 3:] - asked)
 
 
@@ -76,7 +76,7 @@ def draw(runs: Runs) -> Any:
         axes[1, 0].plot(clock, spin(session), color=color, label=f"goal: {name}")
         axes[2, 0].plot(clock, turned(session), color=color, label=f"goal: {name}")
     session = runs[REFERENCE]
-    asked = [np.linalg.norm(session.angular_momentum_asked(time)) for time in times(session)]
+    asked = [np.linalg.norm(session.steering.angular_momentum_asked(time)) for time in times(session)]
     axes[1, 0].plot(times(session), asked, ":", color=FORCE, label="asked for by reference")
     finish(axes[0, 0], "the first arm", "time [s]", "way [1]")
     finish(axes[1, 0], "angular momentum about the CoM", "time [s]", "|k| [N m s]")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -19,6 +21,8 @@ GRANTED, FORCE, SPIN = (css(color) for color in (palette.COP_WANTED, palette.GRF
 LINEAR, DESIRED, ADMISSIBLE, MEASURED = (
     css(color) for color in (palette.LINEAR, palette.DESIRED, palette.ADMISSIBLE, palette.MEASURED)
 )
+# Spikes are the outermost values of a line, and so is what a robot does while it falls, percent.
+_SPIKES, _TUMBLES = (0.1, 99.9), (5.0, 95.0)
 CHANGED, MUTED, INK = css(palette.VERMILLION), css(palette.GREY), css(palette.BLACK)
 
 
@@ -68,13 +72,41 @@ def heading(title: str, session: Session | FinishedRun) -> str:
     return f"{title}\n{session.robot.spec.title}, {pushes or 'no push'}"
 
 
-def cut_spikes(axes: Any) -> None:
-    """Let spikes of a few ticks run out of the picture where they would flatten everything else, and say so."""
-    values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.get_lines()])
-    low, high = np.nanpercentile(values, [0.1, 99.9])
+def _drawn(lines: Sequence[Any]) -> np.ndarray:
+    return np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in lines])
+
+
+def _span(lines: Sequence[Any], parts: tuple[float, float]) -> tuple[float, float]:
+    """Between which values all but parts of some lines lie; NaN if they are drawn nowhere."""
+    values = _drawn(lines)
+    if not np.isfinite(values).any():
+        return math.nan, math.nan
+    low, high = np.nanpercentile(values, parts)
+    return float(low), float(high)
+
+
+def show_at_least(axes: Any, least: float) -> None:
+    """Let a picture show everything from minus this to this: the noise of a robot at rest is then a level line."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, -least), max(high, least))
+
+
+def cut_spikes(axes: Any, least: float = -math.inf, tumbling: Sequence[Any] = ()) -> None:
+    """Let spikes of a few ticks run out of the picture where they would flatten everything else, and say so.
+
+    Args:
+        axes: a picture.
+        least: it will show at least from minus this to this; what stays within is no spike.
+        tumbling: those of its lines of which more than spikes may run out: of a robot that falls.
+    """
+    low, high = _span([line for line in axes.get_lines() if line not in tumbling], _SPIKES)
+    if tumbling:
+        lower, higher = _span(tumbling, _TUMBLES)
+        low, high = np.fmin(low, lower), np.fmax(high, higher)
+    values = _drawn(axes.get_lines())
     room = 0.15 * (high - low)
     highest, lowest = np.nanmax(values), np.nanmin(values)
-    if highest <= high + room and lowest >= low - room:
+    if highest <= max(high + room, least) and lowest >= min(low - room, -least):
         return
     axes.set_ylim(low - room, high + room)
     axes.text(

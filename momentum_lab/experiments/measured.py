@@ -55,16 +55,6 @@ def momentum_slope(session: Session) -> np.ndarray:
     return np.diff(session.recording.column("momentum"), axis=0) / session.scenario.timestep
 
 
-def ground_rate(session: Session) -> np.ndarray:
-    """Rate of the angular momentum that the ground causes (n, 3), N m.
-
-    The measured rate without the push's moment about the CoM.
-    """
-    column = session.recording.column
-    push, com = column("push_wrench"), column("com")
-    return column("momentum_rate_measured")[:, 3:] - push[:, 3:] + np.cross(com, push[:, :3])
-
-
 def ground_force(session: Session) -> np.ndarray:
     """Net ground reaction force (n, 3), N."""
     return session.recording.column("foot_wrench_measured")[..., :3].sum(axis=1)
@@ -84,7 +74,7 @@ def pelvis_turn(session: Session) -> np.ndarray:
 
 def motion_done(session: Session) -> np.ndarray:
     """How far the joints of the scenario's motion are on their way (n, joints): 1 is all of it."""
-    reach = session.motion_reach
+    reach = session.steering.motion_reach
     moving = np.flatnonzero(reach)
     angles = session.recording.column("q")[:, 7 + moving]
     return np.asarray((angles - angles[0]) / reach[moving])

@@ -61,7 +61,7 @@ def _part_of(done: int, count: int, proceed: Callable[[float], bool]) -> Callabl
 def judged(figure: Figure, played: Played) -> list[Claim]:
     """All claims of a figure; a simulation that broke down is a claim that fails."""
     ended = [
-        Claim(f"the run {label} reaches its end", error, "finite to the end", False)
+        Claim(f"the run {label} reaches its end", error, "finite to the end", holds=False)
         for label, error in played.broken.items()
     ]
     return ended + figure.claims(played.runs)

@@ -23,11 +23,14 @@ from momentum_lab.experiments.canvas import (
     cut_spikes,
     finish,
     heading,
+    show_at_least,
 )
+from momentum_lab.experiments.least_span import LEAST
+from momentum_lab.experiments.second_curves import beside_momenta, beside_paths, beside_points, beside_rate
+from momentum_lab.experiments.thinned import Thinned, projected
 from momentum_lab.finished import FinishedRun
 from momentum_lab.summary import corners_in_world
 
-_MOST_POINTS = 4000
 _DOTS_PER_INCH = 110
 _RATES = (("desired", DESIRED, "--"), ("admissible", ADMISSIBLE, "-"), ("measured", MEASURED, "-"))
 # A sole that presses less than this on the ground does not support, N.
@@ -35,30 +38,20 @@ _LEAST_SUPPORT = 1.0
 
 
 def over_time(run: FinishedRun) -> Any:
-    """Four plots over time, along the largest push: points and support, both rates, both momenta."""
+    """Four plots over time, along the largest push: points and support, both rates, both momenta.
+
+    A robot beside the first is dashed.
+    """
     picture, axes = canvas(heading(_title(run), run), 4, 1, (8.0, 9.6), sharex=True)
     forward = along(run)
-    column = _Columns(run)
-    _points(axes[0, 0], run, column, forward)
-    across = np.array([-forward[1], forward[0], 0.0])
-    linear, angular = np.append(forward, 0.0), across
-    for kind, color, style in _RATES:
-        rate = column(f"momentum_rate_{kind}")
-        axes[1, 0].plot(column("time"), rate[:, :3] @ linear, style, color=color, label=kind, lw=1.2)
-        axes[2, 0].plot(column("time"), rate[:, 3:] @ angular, style, color=color, label=kind, lw=1.2)
-    momentum = column("momentum")
-    axes[3, 0].plot(
-        column("time"), momentum[:, :3] @ linear, color=LINEAR, label="linear, along the push (N s)"
-    )
-    axes[3, 0].plot(
-        column("time"),
-        momentum[:, 3:] @ angular,
-        color=SPIN,
-        label="angular, about the axis across (kg m²/s)",
-    )
-    for row in axes[1:3, 0]:
-        cut_spikes(row)
-    for row in axes[1:, 0]:
+    linear = np.array([*forward, 0.0, 0.0, 0.0, 0.0])
+    angular = np.array([0.0, 0.0, 0.0, -forward[1], forward[0], 0.0])
+    _points(axes[0, 0], run, forward)
+    _rates(axes[1, 0], run, linear, LEAST["linear"])
+    _rates(axes[2, 0], run, angular, LEAST["angular"])
+    _momenta(axes[3, 0], run, linear, angular)
+    for row, name in zip(axes[1:, 0], ("linear", "angular", "momenta"), strict=True):
+        show_at_least(row, LEAST[name])
         band(row, run)
     finish(axes[1, 0], "Rate of linear momentum along the push", "", "N")
     finish(axes[2, 0], "Rate of angular momentum about the axis across", "", "N m")
@@ -67,9 +60,12 @@ def over_time(run: FinishedRun) -> Any:
 
 
 def on_the_ground(run: FinishedRun) -> Any:
-    """Paths of CoM, CoP and capture point from above, with the soles where they stood at first and at last."""
+    """Paths of CoM, CoP and capture point from above, with the soles where they stood at first and at last.
+
+    A robot beside the first is dashed; only its points are shown.
+    """
     picture, axes = canvas("On the ground, from above", 1, 1, (8.0, 5.2))
-    column, chart = _Columns(run), axes[0, 0]
+    column, chart = Thinned(run), axes[0, 0]
     corners = corners_in_world(run, column("sole_pose"))[..., :2]
     for moment, style in ((0, "-"), (-1, ":")):
         for foot in corners[moment]:
@@ -83,6 +79,7 @@ def on_the_ground(run: FinishedRun) -> Any:
     ):
         path = column(name)[:, :2]
         chart.plot(path[:, 0], path[:, 1], color=color, lw=1.3, label=label)
+    beside_paths(chart, run)
     low, high = corners.reshape(-1, 2).min(axis=0) - 0.1, corners.reshape(-1, 2).max(axis=0) + 0.1
     chart.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     finish(chart, "", "x (m)", "y (m)", loc="center left", bbox_to_anchor=(1.02, 0.5))
@@ -108,18 +105,28 @@ def hull_order(corners: np.ndarray) -> np.ndarray:
     return corners[np.argsort(np.arctan2(arms[:, 1], arms[:, 0]))]
 
 
-class _Columns:
-    """Quantities of a run over time, thinned out to what a picture can show."""
-
-    def __init__(self, run: FinishedRun) -> None:
-        self._run = run
-        self._every = max(1, len(run.recording) // _MOST_POINTS)
-
-    def __call__(self, name: str) -> np.ndarray:
-        return self._run.recording.column(name, self._every)
+def _rates(axes: Any, run: FinishedRun, axis: np.ndarray, least: float) -> None:
+    """Momentum rates over time along an axis (6,); what is no larger than the least is no spike."""
+    column = Thinned(run)
+    for kind, color, style in _RATES:
+        rate = projected(column(f"momentum_rate_{kind}"), axis)
+        axes.plot(column("time"), rate, style, color=color, label=kind, lw=1.2)
+    cut_spikes(axes, least, beside_rate(axes, run, axis))
 
 
-def _points(axes: Any, run: FinishedRun, column: _Columns, forward: np.ndarray) -> None:
+def _momenta(axes: Any, run: FinishedRun, linear: np.ndarray, angular: np.ndarray) -> None:
+    """Both momenta over time, along axes (6,)."""
+    column = Thinned(run)
+    for axis, color, name in (
+        (linear, LINEAR, "linear, along the push (N s)"),
+        (angular, SPIN, "angular, about the axis across (kg m²/s)"),
+    ):
+        axes.plot(column("time"), projected(column("momentum"), axis), color=color, label=name)
+    beside_momenta(axes, run, linear, angular)
+
+
+def _points(axes: Any, run: FinishedRun, forward: np.ndarray) -> None:
+    column = Thinned(run)
     corners = corners_in_world(run, column("sole_pose"))[..., :2] @ forward
     pressed = column("foot_wrench_measured")[:, :, 2] > _LEAST_SUPPORT
     ahead = np.where(pressed, corners.max(axis=2), -np.inf).max(axis=1)
@@ -138,6 +145,7 @@ def _points(axes: Any, run: FinishedRun, column: _Columns, forward: np.ndarray) 
     )
     for name, color, label in lines:
         axes.plot(time, 100.0 * (column(name)[:, :2] @ forward - origin), color=color, label=label, lw=1.2)
+    beside_points(axes, run, forward, origin)
     band(axes, run)
     axes.set_ylim(*_limits(100.0 * (behind - origin), 100.0 * (ahead - origin)))
     finish(axes, "Points along the push, from the middle of the support", "", "cm", ncols=3)

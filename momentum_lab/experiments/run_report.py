@@ -15,6 +15,7 @@ from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.registry import CONTROLLERS
 from momentum_lab.errors import InputError
 from momentum_lab.events import MoveGround, SessionEvent, SetFriction
+from momentum_lab.experiments.both import both, different
 from momentum_lab.experiments.claims import Claim, at_most
 from momentum_lab.experiments.run_plots import on_the_ground, over_time, png
 from momentum_lab.finished import FinishedRun
@@ -56,19 +57,26 @@ def report(run: FinishedRun) -> bytes:
     """
     if not len(run.recording):
         raise InputError("report", "a run without samples", "a run of at least one tick")
-    summary = summarize(run, Timing(np.zeros(0), math.inf))
+    robots = tuple((name, each, summarize(each, Timing(np.zeros(0), math.inf))) for name, each in both(run))
     title = run.scenario.title or run.scenario.name
     parts = (
         f"<h1>{escape(title)}</h1>",
         f'<p class="dim">{escape(_setting(run))}</p>',
-        f'<p class="result">{escape(_result(summary))}</p>',
-        _section("Numbers", _table(_numbers(summary))),
+        *(
+            f'<p class="result">{escape(_of(name, _result(each, summary)))}</p>'
+            for name, each, summary in robots
+        ),
+        _section("Numbers", _numbers(robots)),
+        *([_section("What differs", _differences(run))] if len(robots) > 1 else []),
         _section("Over time", _image(png(over_time(run)), "points, momentum rates and momenta over time")),
         _section("On the ground", _image(png(on_the_ground(run)), "paths of CoM and CoP under the feet")),
         _section("Pushes", _pushes(run)),
-        _section("Gains", _gains(run)),
+        _section(_headed("Gains", robots[0][0]), _gains(run)),
         _section("What was done", _events(run)),
-        _section("What was checked", _claims(checks(run, summary))),
+        *(
+            _section(_headed("What was checked", name), _claims(checks(each, summary)))
+            for name, each, summary in robots
+        ),
         _section("Limits", "".join(f"<p>{escape(line)}</p>" for line in _LIMITS)),
         _section("Run it again", _again(run)),
     )
@@ -119,13 +127,39 @@ def _setting(run: FinishedRun) -> str:
     return " · ".join(words)
 
 
-def _result(summary: Summary) -> str:
+def _of(name: str, words: str) -> str:
+    """A sentence about one of two robots; about one that is alone without a name."""
+    return f"{name}: {words[:1].lower()}{words[1:]}" if name else words
+
+
+def _headed(words: str, name: str) -> str:
+    """A heading about one of two robots."""
+    return f"{words}: {name}" if name else words
+
+
+def _result(run: FinishedRun, summary: Summary) -> str:
+    if run.lay_there:
+        return "Had fallen already when it came"
     if summary.fell and summary.fall_time is not None:
         return f"Fell at {summary.fall_time:.2f} s: {summary.fall_reason}"
     return f"Stands {'still' if summary.settled else 'and still moves'} after {summary.seconds:.2f} s"
 
 
-def _numbers(summary: Summary) -> list[tuple[str, ...]]:
+def _numbers(robots: Sequence[tuple[str, FinishedRun, Summary]]) -> str:
+    """A column for each robot."""
+    columns = [_figures(summary) for _, _, summary in robots]
+    rows = [(row[0][0], *(value for _, value in row)) for row in zip(*columns, strict=True)]
+    alone = len(robots) == 1
+    return _table(rows if alone else [("", *(name for name, _, _ in robots)), *rows], headed=not alone)
+
+
+def _differences(run: FinishedRun) -> str:
+    rows = [(name, *values) for name, values in different(run).items()]
+    head = ("", *(name for name, _ in both(run)))
+    return _table([head, *rows], headed=True) if rows else "<p>Nothing was chosen differently.</p>"
+
+
+def _figures(summary: Summary) -> list[tuple[str, str]]:
     margin = (
         "never supported"
         if summary.min_cop_margin is None

@@ -9,13 +9,14 @@ import numpy as np
 
 from momentum_lab.experiments.run_columns import column_names
 from momentum_lab.finished import FinishedRun
+from momentum_lab.trace import SECOND
 
 MOST_ROWS = 10_000
 """More than a spreadsheet likes."""
 
 
 def table(run: FinishedRun, most: int = MOST_ROWS) -> bytes:
-    """The run as a CSV file, SI units, world axes.
+    """The run as a CSV file, SI units, world axes; a robot beside the first follows in columns of its own.
 
     Args:
         run: the run.
@@ -25,10 +26,29 @@ def table(run: FinishedRun, most: int = MOST_ROWS) -> bytes:
     writer = csv.writer(file)
     writer.writerow(header(run))
     rows = run.recording.rows(max(1, -(-len(run.recording) // most)))
+    if run.beside is not None:
+        times = rows[:, run.recording.slices["time"]].ravel()
+        rows = np.hstack([rows, _rows_at(run.beside, times)])
     np.savetxt(file, rows, fmt="%.9g", delimiter=",", newline="\r\n")
     return file.getvalue().encode()
 
 
 def header(run: FinishedRun) -> list[str]:
-    """The names of the columns: `quantity/foot or joint/component [unit]`, without a unit where there is none."""
-    return column_names(run.recording.layout)
+    """The names of the columns: `quantity/foot or joint/component [unit]`, without a unit where there is none.
+
+    Those of a robot beside the first begin with `second/`.
+    """
+    names = column_names(run.recording.layout)
+    return names if run.beside is None else [*names, *(f"{SECOND}{name}" for name in names)]
+
+
+def _rows_at(run: FinishedRun, times: np.ndarray) -> np.ndarray:
+    """The samples of a run at some times (n, width); NaN before it began and after it ended."""
+    own = run.recording.rows()
+    found = np.full((len(times), run.recording.layout.width), np.nan)
+    if len(own):
+        begin = own[0, run.recording.slices["time"]]
+        ticks = np.rint((times - begin) / run.scenario.timestep).astype(int)
+        there = (ticks >= 0) & (ticks < len(own))
+        found[there] = own[ticks[there]]
+    return found

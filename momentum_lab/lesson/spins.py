@@ -24,7 +24,7 @@ def of_speeds(session: Session) -> np.ndarray:
 
 def of_motion(session: Session) -> np.ndarray:
     """Angular momentum of the joints that the scenario's motion moves (n, 3), N m s."""
-    return np.asarray(of_speeds(session)[:, :, 6 + np.flatnonzero(session.motion_reach)].sum(axis=2))
+    return np.asarray(of_speeds(session)[:, :, 6 + np.flatnonzero(session.steering.motion_reach)].sum(axis=2))
 
 
 def of_rest(session: Session) -> np.ndarray:

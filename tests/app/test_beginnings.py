@@ -119,7 +119,7 @@ def test_an_opened_run_pushes_again():
     theirs.take(ApplyPush(PUSH))
     theirs.tick(40)
     mine = Playback(Scenario("mine", robot="g1"))
-    mine.take(OpenRun(theirs.taken(False).run))
+    mine.take(OpenRun(theirs.taken().run))
     mine.tick(100)
     mine.take(Play())
     mine.take(ApplyPush(PUSH))
@@ -153,7 +153,7 @@ def test_a_hand_that_is_forgotten_lets_go():
 def test_an_opened_run_lets_go_when_it_did():
     theirs = pulled("theirs")
     mine = Playback(Scenario("mine", robot="g1"))
-    mine.take(OpenRun(theirs.taken(False).run))
+    mine.take(OpenRun(theirs.taken().run))
     mine.tick(200)
     mine.take(LookBack(0.09))
     mine.take(Branch())

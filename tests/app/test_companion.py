@@ -164,6 +164,14 @@ def test_a_simulation_that_cannot_go_on_leaves_the_first_alone(monkeypatch):
     assert other(playback).stopped is None
 
 
+def test_a_second_robot_counts_its_own_failures_only():
+    playback = Playback(Scenario("s", robot="g1"))
+    playback.session.solver_failures = 3
+    playback.take(SetBeside(Beside()))
+    playback.tick(2)
+    assert (playback.truth(1.0).failures, other(playback).failures) == (3, 0)
+
+
 def test_the_second_robot_stays_for_another_robot_and_leaves_with_its_scenario():
     playback = pair(Beside(priority=1.0))
     playback.take(SetBeside(Beside(priority=0.5)))

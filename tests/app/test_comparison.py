@@ -224,3 +224,20 @@ def test_a_view_of_two_is_wide_enough_for_both(name):
     assert of_two(VIEWS[name], np.array([0.0, 1.5])).width > VIEWS[name].width
     if VIEWS[name].azimuth == 0.0:  # from the front their whole distance is seen
         assert of_two(VIEWS[name], np.array([0.0, 1.5])).width > VIEWS[name].width + 1.5
+
+
+def test_a_robot_put_beside_a_fallen_one_counts_no_fall_but_its_own():
+    desk = Desk(None)
+    desk.playback.take(ApplyPush(Push(force=600.0)))
+    while desk.playback.session.fall is None:
+        desk.play(100)
+    desk.playback.take(SetBeside(Beside(priority=1.0)))
+    desk.play(40)
+    fell = f"fell after {desk.playback.session.fall.time:.2f} s"  # pushed at the start
+    assert re.search(rf"result</td><td[^>]*>{fell}</td><td[^>]*>had fallen already<", desk.table)
+    desk.playback.take(Reset())
+    desk.playback.take(ApplyPush(Push(force=600.0)))
+    while desk.playback.beside.session.fall is None:
+        desk.play(100)
+    assert "had fallen already" not in desk.table
+    assert f">fell after {desk.playback.beside.session.fall.time - 0.001:.2f} s<" in desk.table

@@ -16,7 +16,7 @@ from momentum_lab.app.snapshot import encoded
 from momentum_lab.app.wire import RunTaken, packed, unpacked_answer
 from momentum_lab.beside import Beside
 from momentum_lab.errors import InputError
-from momentum_lab.events import ApplyPush
+from momentum_lab.events import ApplyPush, SetBeside, SetGain, SetPriority
 from momentum_lab.physics.push import Push
 from momentum_lab.run_file import decoded, run_of_trace
 from momentum_lab.scenario import Scenario
@@ -33,7 +33,7 @@ def playback() -> Playback:
 
 @pytest.fixture(scope="module")
 def taken(playback) -> RunTaken:
-    return playback.taken(recording=True)
+    return playback.recorded()
 
 
 def test_a_run_goes_through_the_pipe(taken):
@@ -73,7 +73,7 @@ def test_a_recording_made_elsewhere_is_the_one_made_here(taken):
 
 def test_what_cannot_be_made_is_told():
     warm_up()
-    empty = Playback(Scenario("s", robot="g1")).taken(recording=False)
+    empty = Playback(Scenario("s", robot="g1")).taken()
     with pytest.raises(InputError, match=r"^download: got report; allowed: .*at least one tick"):
         made_elsewhere("report", empty)
 
@@ -92,9 +92,29 @@ def test_both_robots_are_in_what_is_taken():
     playback.tick(20)
     playback.take(ApplyPush(Push(force=40.0)))
     playback.tick(20)
-    assert playback.taken(recording=False).other is None
-    run = finished(unpacked_answer(packed(playback.taken(recording=True))))
+    assert playback.taken().other is None
+    run = finished(unpacked_answer(packed(playback.recorded())))
     session = playback.beside.session
     assert np.array_equal(run.beside.recording.rows(), session.recording.rows(), equal_nan=True)
     assert (run.choices.priority, run.beside.choices.priority) == (0.0, 1.0)
     assert run.beside.pushes == session.pushes
+    trace = load_trace(io.BytesIO(made("trace", playback.recorded())), "trace.npz")
+    assert np.array_equal(trace.columns["com"], playback.session.recording.column("com"))
+    assert trace.second.keys() == trace.columns.keys()
+    assert np.array_equal(trace.second["com"], session.recording.column("com"))
+    assert run_of_trace(trace) == run.run
+
+
+def test_a_second_that_came_later_is_taken_with_all_that_was_chosen_before():
+    playback = Playback(Scenario("s", robot="g1"))
+    playback.take(SetPriority(0.25))
+    playback.take(SetGain("linear_damping", 9.0))
+    playback.tick(30)
+    playback.take(SetBeside(Beside(gains={"angular_damping": 7.0})))
+    playback.tick(20)
+    run = finished(playback.recorded())
+    assert run.beside.choices == playback.beside.session.choices
+    assert run.choices.differing(run.beside.choices) == {"angular_damping"}
+    assert (run.since, run.beside.since) == (0.0, pytest.approx(0.031))
+    page = made("report", playback.recorded()).decode()
+    assert "angular damping 5</th><th>angular damping 7</th>" in page

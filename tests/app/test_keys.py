@@ -31,7 +31,8 @@ class Desk:
         status = FakeHandle(toggle=lambda: note("toggle"))
         tabs = FakeHandle(open=lambda index: note(f"tab {index}"))
         hand = FakeHandle(toggle=lambda: note("drag pushes"), give_up=lambda: note("give up"))
-        add_keys(self.client, note, push.apply, push, status, tabs, runs, hand)
+        colours = FakeHandle(toggle=lambda: note("dark or light"))
+        add_keys(self.client, note, push.apply, push, status, tabs, runs, hand, colours)
 
     def _add_command(self, label: str, hotkey: str | None = None, modifier: str = "") -> FakeHandle:
         command = FakeHandle()
@@ -49,7 +50,7 @@ def desk() -> Desk:
 
 
 def test_what_each_key_does(desk):
-    for key in (*"PKJLR12345FMNGTZ", "shiftZ"):
+    for key in (*"PKJLR12345FMNGTZC", "shiftZ"):
         desk.press(key)
     assert desk.done == [
         "push",
@@ -64,6 +65,7 @@ def test_what_each_key_does(desk):
         "ghost",
         "drag pushes",
         "give up",
+        "dark or light",
         "give up",
     ]
 
@@ -72,7 +74,7 @@ def test_no_key_is_used_twice_and_none_that_widgets_need(desk):
     hotkeys = [hotkey for hotkey, _ in desk.commands.values() if hotkey]
     assert len(set(hotkeys)) == len(hotkeys)
     assert not set(hotkeys) & set("WASDQE")
-    assert set(hotkeys) == {*"PKJLRB12345FMNGHTZ", "shiftZ"}
+    assert set(hotkeys) == {*"PKJLRB12345FMNGHTZC", "shiftZ"}
 
 
 def test_a_key_that_is_held_down_acts_once(desk, monkeypatch):

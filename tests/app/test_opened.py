@@ -19,6 +19,7 @@ from momentum_lab.events import (
     Pause,
     Play,
     Reset,
+    SelectController,
     SetGain,
     SetGains,
 )
@@ -46,7 +47,7 @@ def original() -> Playback:
 @pytest.fixture
 def opened(original) -> Playback:
     playback = Playback(Scenario("mine", robot="g1"))
-    playback.take(OpenRun(original.taken(False).run))
+    playback.take(OpenRun(original.taken().run))
     return playback
 
 
@@ -72,6 +73,20 @@ def test_what_else_is_done_is_no_difference_of_bits(opened):
     opened.tick(10)
     opened.take(SetGain("friction", 0.5))
     opened.tick(500)
+    assert opened.truth(1.0).opened == Opened(0.122, over=True, agrees=None)
+
+
+def test_what_its_robot_cannot_do_any_more_is_left_out(original, opened):
+    """Another controller has no such gain; what else was done in the run is done."""
+    opened.tick(10)
+    opened.take(SelectController("slack-qp"))
+    opened.tick(500)
+    assert not opened.playing
+    done = [entry.event for entry in opened.session.log]
+    theirs = [entry.event for entry in original.session.log]
+    assert SetGain("linear_damping", 12.0) in theirs
+    wanted = [event for event in theirs if event != SetGain("linear_damping", 12.0)]
+    assert done == [wanted[0], SelectController("slack-qp"), *wanted[1:]]
     assert opened.truth(1.0).opened == Opened(0.122, over=True, agrees=None)
 
 
@@ -119,7 +134,7 @@ def test_both_robots_of_a_run_do_what_was_done():
     theirs.take(ApplyPush(Push(force=60.0)))
     theirs.take(SetGains({"linear_damping": 12.0, "linear_stiffness": 40.0}))
     theirs.tick(40)
-    run = theirs.taken(False).run
+    run = theirs.taken().run
     mine = Playback(Scenario("mine", robot="g1"))
     mine.take(OpenRun(run))
     mine.tick(500)

@@ -238,6 +238,27 @@ def test_a_branch_from_the_very_beginning(fallen):
     assert len(fallen.session.recording) == 1
 
 
+def test_a_branch_from_where_the_robot_was_stood_up(playback):
+    """What was chosen since then holds, what was done since then has not been done."""
+    playback.tick(30)
+    playback.take(Reset())
+    playback.tick(20)
+    playback.take(ApplyPush(Push(force=60.0)))
+    playback.tick(20)
+    playback.take(Pause())
+    playback.take(SetPriority(0.5))
+    playback.take(LookBack(1e3))
+    assert playback.shown.number("time") == 0.0
+    playback.take(Branch())
+    now = truth(playback)
+    assert (now.playing, now.behind, now.priority, now.push) == (True, 0.0, 0.5, None)
+    assert playback.latest.number("time") == 0.0
+    playback.tick(40)
+    fresh = Playback(Scenario("mine", robot="talos", priority=0.5))
+    fresh.tick(40)
+    assert np.array_equal(fresh.session.recording.rows(), playback.session.recording.rows(), equal_nan=True)
+
+
 def test_a_branch_at_the_end_just_goes_on(playback):
     playback.tick(10)
     playback.take(Pause())

@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable, Iterator
 
 import pytest
+from websockets.exceptions import ConnectionClosed
 
 from momentum_lab.app import server
 from momentum_lab.app.bare_client import BareClient, Received
@@ -191,7 +192,8 @@ def test_closing_the_lab_ends_everything():
     assert not alive(pid)
     with pytest.raises(OSError, match="refused"):
         socket.create_connection(("127.0.0.1", lab.port), timeout=1.0)
-    client.close()
+    with pytest.raises(ConnectionClosed):
+        client.read(PATIENCE)
 
 
 def test_a_full_lab_says_so(client, lab, monkeypatch):
@@ -283,8 +285,15 @@ def test_ctrl_c_and_sigterm_end_it_cleanly(served, number):
         client.read_until(furnished, PATIENCE)
         below = children(process.pid)
         assert len(below) >= 2
+        wait_for(lambda: client._socket.recv_messages.paused)  # it has read enough, as a phone that sleeps
         for pid in (process.pid, *below) if number == signal.SIGINT else (process.pid,):
             os.kill(pid, number)  # a terminal sends Ctrl+C to all of them
+        begun = time.monotonic()
+        process.wait(PATIENCE)
+        assert time.monotonic() - begun < 4.0  # this tab reads no goodbye; viser alone would wait 6 s for it
+        socket.create_server(("127.0.0.1", int(url.rpartition(":")[2]))).close()
+        with pytest.raises(ConnectionClosed):
+            client.read(PATIENCE)
     out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0
     assert "Traceback" not in err

@@ -32,6 +32,7 @@ class Desk:
         self.said, self.warned, self.taken_back = [], [], []
         sharing = Sharing(
             self.playback.taken,
+            self.playback.recorded,
             self.opened.append,
             self.told.append,
             lambda name, content: self.sent.update({name: content}),

@@ -15,7 +15,7 @@ from momentum_lab.app.wire import (
     TakeBack,
     packed,
     rows_of,
-    unpacked_frame,
+    unpacked_answer,
     unpacked_message,
 )
 from momentum_lab.beside import Beside
@@ -72,7 +72,7 @@ def test_frames():
     playback = Playback(Scenario("s", robot="g1"))
     row = playback.latest.row
     frame = Frame(playback.truth(0.99), row.tobytes(), np.vstack([row, row]).tobytes(), ("a", "b"))
-    back = unpacked_frame(packed(frame))
+    back = unpacked_answer(packed(frame))
     assert back == frame
     assert np.array_equal(rows_of(back.row, row.size), row[None], equal_nan=True)
     assert rows_of(back.history, row.size).shape == (2, row.size)

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from momentum_lab.app.playback import Playback
-from momentum_lab.app.wire import Frame, FrameTaken, Message, packed, unpacked_frame
+from momentum_lab.app.wire import Frame, FrameTaken, Message, packed, unpacked_answer
 from momentum_lab.app.worker import Worker
 from momentum_lab.events import ApplyPush, Pause
 from momentum_lab.physics.push import Push
@@ -38,7 +38,7 @@ class Pipe:
         return packed(self._waiting.pop(0))
 
     def send_bytes(self, data: bytes) -> None:
-        self.frames.append(unpacked_frame(data))
+        self.frames.append(unpacked_answer(data))
         self.sent.append(self.now)
         if len(self.frames) <= len(self._answers):
             self._waiting += self._answers[len(self.frames) - 1]

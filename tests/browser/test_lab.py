@@ -84,6 +84,7 @@ def test_a_push_a_slider_a_fall_and_a_reload(served: Served, open_page: Opener) 
 
     lab.press("2")
     expect(lab.page.get_by_role("tab", name="Control")).to_have_attribute("aria-selected", "true")
+    assert left_of(lab, "preset") == pytest.approx(left_of(lab, "planner"), abs=0.5)
     lab.page.get_by_text("Gains", exact=True).evaluate("g => g.click()")
     lab.slide("linear damping (1/s)", "ArrowRight")
     lab.expect_text("linear damping: [0-9.]+ → [0-9.]+ 1/s")  # this text comes from the session
@@ -105,6 +106,14 @@ def test_a_push_a_slider_a_fall_and_a_reload(served: Served, open_page: Opener) 
     lab.until_furnished()
     lab.expect_status("standing")
     lab.expect_text(re.escape(INVITATION))
+
+
+def left_of(lab: LabPage, name: str) -> float:
+    """Where the box beside a name begins, px."""
+    row = lab.page.locator("label").filter(has_text=re.compile(f"^{name}$")).first
+    box = lab.page.locator(f"[id='{row.get_attribute('for', timeout=PATIENCE)}']").bounding_box()
+    assert box is not None
+    return box["x"]
 
 
 def test_the_second_tab_has_a_robot_of_its_own(served: Served, open_page: Opener) -> None:

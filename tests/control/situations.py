@@ -7,7 +7,8 @@ import pinocchio as pin
 
 from momentum_lab.control.accelerations import AccelerationProgram, MotionWeights
 from momentum_lab.control.controller import Reference
-from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds
+from momentum_lab.control.foot_forces import FootForces, ForceBounds, LoadSharing
+from momentum_lab.control.footing import Footing
 from momentum_lab.control.standing import StandingGoal
 from momentum_lab.momentum.foot_ground import FootGround
 from momentum_lab.robot.model import RobotModel
@@ -53,10 +54,10 @@ def feet_for(
     robot: RobotModel, dynamics: Dynamics, rate: np.ndarray, stance: tuple[int, ...] = BOTH
 ) -> FootForces:
     """Admissible foot forces next to a momentum rate (6,)."""
-    footing = Footing(robot)
     bounds = ForceBounds(friction=0.6, normal_moment=0.018, least_force=0.02 * robot.mass * G)
     force = rate[:3] + np.array([0.0, 0.0, robot.mass * G])
-    return footing.share(footing.stance_feet(dynamics, stance, 0.005), force, rate[3:], bounds)
+    stance_feet = Footing(robot).stance_feet(dynamics, stance, 0.005)
+    return LoadSharing(robot).share(stance_feet, force, rate[3:], bounds)
 
 
 def accelerations_for(

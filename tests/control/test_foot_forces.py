@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 import pytest
-from scipy.spatial import ConvexHull
 
-from momentum_lab.control.foot_forces import Footing, ForceBounds, _cops, _forces
+from momentum_lab.control.foot_forces import ForceBounds, LoadSharing, _cops, _forces
+from momentum_lab.control.footing import Footing
 from momentum_lab.robot.state import State
 from tests.conftest import assert_close
 from tests.control.situations import BOTH, G, home, swaying
@@ -31,8 +31,8 @@ def demands(robot, rng, count=40):
 
 
 def share(robot, dynamics, stance, force, angular_rate, bounds=BOUNDS):
-    footing = Footing(robot)
-    return footing.share(footing.stance_feet(dynamics, stance, BORDER), force, angular_rate, bounds)
+    feet = Footing(robot).stance_feet(dynamics, stance, BORDER)
+    return LoadSharing(robot).share(feet, force, angular_rate, bounds)
 
 
 def momentum_rate(robot, dynamics, wrench):
@@ -54,12 +54,12 @@ def test_wrenches_and_momentum_rate_tell_the_same(robot, rng, stance):
 
 def test_both_stages_in_one_call_answer_what_two_programs_answer(robot, rng):
     """Where no bound presses; where one does, the call does not claim to have the answer."""
-    dynamics, footing = swaying(robot, rng), Footing(robot)
-    feet, certified = footing.stance_feet(dynamics, BOTH, BORDER), 0
+    dynamics, sharing = swaying(robot, rng), LoadSharing(robot)
+    feet, certified = Footing(robot).stance_feet(dynamics, BOTH, BORDER), 0
     for force, angular_rate in demands(robot, rng, count=200):
-        wrenches, rate, claimed = footing._quietly(feet, force, angular_rate, BOUNDS)
+        wrenches, rate, claimed = sharing._quietly(feet, force, angular_rate, BOUNDS)
         forces = _forces(feet, force, angular_rate, BOUNDS)
-        staged = footing._recombine(feet, forces, _cops(feet, forces, angular_rate, BOUNDS))
+        staged = sharing._recombine(feet, forces, _cops(feet, forces, angular_rate, BOUNDS))
         difference = np.abs(wrenches - staged.wrench).max()
         assert claimed == (difference < 1e-3)
         if claimed:
@@ -154,8 +154,7 @@ def ankle_moments(robot, dynamics, wrench) -> np.ndarray:
 def test_what_the_ankles_need_not_do_they_do_not_do(robot):
     """Lee and Goswami's claim: a goal that forces through the ankles can reach leaves the ankles without torque."""
     dynamics = home(robot)
-    footing = Footing(robot)
-    feet = footing.stance_feet(dynamics, BOTH, BORDER)
+    feet = Footing(robot).stance_feet(dynamics, BOTH, BORDER)
     for tilt, split in (((0.0, 0.0), 0.5), ((0.05, 0.0), 0.5), ((-0.04, 0.06), 0.4), ((0.0, -0.08), 0.7)):
         forces = [part * robot.mass * G * np.array([tilt[0], tilt[1], 1.0]) for part in (split, 1.0 - split)]
         angular_rate = sum(np.cross(ankle, f) for ankle, f in zip(feet.com_to_ankle, forces, strict=True))
@@ -179,24 +178,6 @@ def test_the_least_force_is_held_when_a_foot_wants_to_lift(robot, heavy):
     answer = share(robot, dynamics, BOTH, weight(robot), angular_rate)
     assert answer.wrench[light, 2] == pytest.approx(BOUNDS.least_force, abs=1e-5)
     assert answer.wrench[heavy, 2] > 0.8 * robot.mass * G
-
-
-def test_the_safe_polygon_is_the_hull_of_the_safe_soles(robot, rng):
-    for stance in (BOTH, (0,)):
-        dynamics = swaying(robot, rng, stance)
-        points = []
-        for foot in stance:
-            sole = robot.soles[foot]
-            for x in (sole.lower[0] + BORDER, sole.upper[0] - BORDER):
-                for y in (sole.lower[1] + BORDER, sole.upper[1] - BORDER):
-                    corner = dynamics.sole_position[foot] + dynamics.sole_rotation[foot] @ [x, y, 0.0]
-                    points.append(corner[:2])
-        hull = ConvexHull(points)
-        polygon = Footing(robot).stance_feet(dynamics, stance, BORDER).safe_polygon
-        expected = np.array(points)[hull.vertices]
-        assert len(polygon) == len(expected)
-        start = np.argmin(np.linalg.norm(expected - polygon[0], axis=1))
-        assert_close(polygon, np.roll(expected, -start, axis=0), 1e-12)
 
 
 def test_on_a_tilted_sole_forces_and_cops_are_meant_in_its_axes(robot, rng):

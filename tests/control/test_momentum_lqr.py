@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_lyapunov
 
+from momentum_lab.control.gains import declared_gains
 from momentum_lab.control.momentum_lqr import (
     LqrCosts,
     OperatingPoint,
     linear_momentum_dynamics,
     momentum_feedback,
 )
+from momentum_lab.control.whole_body_qp import WholeBodyGains
 from momentum_lab.momentum.wrench import sum_wrenches
 from tests.conftest import assert_close
 
@@ -51,6 +55,15 @@ def test_a_and_b_are_differences(point):
 @pytest.mark.parametrize("point", [TWO_FEET, ONE_FOOT])
 def test_the_closed_loop_is_hurwitz(point):
     assert np.linalg.eigvals(momentum_feedback(point, COSTS)).real.max() < -0.3
+
+
+@pytest.mark.parametrize("point", [TWO_FEET, ONE_FOOT, OperatingPoint(95.0, ((0.0, 0.0, -0.9),))])
+def test_whatever_the_sliders_allow_has_a_regulator(point):
+    """All corners of the gains' ranges, where the Riccati equation in SI has no answer for some."""
+    gains = declared_gains(WholeBodyGains())
+    names = ("lqr_com_error", "lqr_velocity_error", "lqr_spin_error", "lqr_force")
+    for corner in itertools.product(*((gains[name].low, gains[name].high) for name in names)):
+        assert np.linalg.eigvals(momentum_feedback(point, LqrCosts(*corner))).real.max() < 0.0
 
 
 @pytest.mark.parametrize("point", [TWO_FEET, ONE_FOOT])

@@ -113,7 +113,7 @@ def test_in_the_air_every_controller_goes_the_loop_and_nothing_has_failed(robot,
     for _ in range(750):
         session.tick()
     joints = session.recording.column("q")[:, 7:]
-    reach = np.abs(session.motion_reach)
+    reach = np.abs(session.steering.motion_reach)
     assert_close(np.abs(joints - joints[0]).max(axis=0)[reach > 0.0], reach[reach > 0.0], 0.01)
     assert_close(joints[-1], joints[0], 5e-3)
     assert session.solver_failures == 0
@@ -159,9 +159,9 @@ def test_every_controller_follows_smoothly(robot, controller, name, stance, tick
     )
     for _ in range(ticks):
         session.tick()
-    joints = np.flatnonzero(session.motion_reach)
+    joints = np.flatnonzero(session.steering.motion_reach)
     angles = session.recording.column("q")[:, 7 + joints]
-    way = (angles - angles[0]) / session.motion_reach[joints]
+    way = (angles - angles[0]) / session.steering.motion_reach[joints]
     assert way.max() > 0.6
     assert session.fall is None
     assert session.solver_failures == 0

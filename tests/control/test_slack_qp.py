@@ -294,13 +294,13 @@ class TestFigure9:
 
 def com_error(session: Session) -> np.ndarray:
     """Horizontal distance of the CoM from its goal (N,), m."""
-    goal_now = session._goal.reference(session.dynamics, LEVEL).com[:2]
+    goal_now = session.steering._goal.reference(session.dynamics, LEVEL).com[:2]
     return np.linalg.norm(session.recording.column("com")[:, :2] - goal_now, axis=1)
 
 
 def pelvis_roll(session: Session) -> np.ndarray:
     """Rotation of the pelvis from its goal about the x axis (N,), rad."""
-    wanted = session._goal.reference(session.dynamics, LEVEL).pelvis_rotation
+    wanted = session.steering._goal.reference(session.dynamics, LEVEL).pelvis_rotation
     axes = (pin.Quaternion(q[3:7]).toRotationMatrix() for q in session.recording.column("q"))
     return np.array([pin.log3(rotation @ wanted.T)[0] for rotation in axes])
 
@@ -312,7 +312,7 @@ def com_slack(session: Session) -> tuple[np.ndarray, np.ndarray]:
     for q, v in zip(column("q")[::10], column("v")[::10], strict=True):
         dynamics = session.robot.at(State(q, v))
         out = controller.compute(
-            dynamics, session._goal.reference(dynamics, LEVEL), session.choices.gains, 0.0, None
+            dynamics, session.steering._goal.reference(dynamics, LEVEL), session.choices.gains, 0.0, None
         )
         found.append(max(abs(out.slack["com x"]), abs(out.slack["com y"])))
     return column("time")[::10], np.array(found)

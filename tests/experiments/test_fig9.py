@@ -36,6 +36,6 @@ def test_slack_is_the_controllers_own() -> None:
     for tick in (50, 400, 1200):
         dynamics = session.robot.at(State(column("q")[tick], column("v")[tick]))
         answer = controller.compute(
-            dynamics, session._goal.reference(dynamics, LEVEL), session.choices.gains, 0.0, None
+            dynamics, session.steering._goal.reference(dynamics, LEVEL), session.choices.gains, 0.0, None
         )
         assert slack[tick] == pytest.approx(answer.slack["com y"], abs=1e-6)

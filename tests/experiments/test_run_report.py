@@ -16,6 +16,7 @@ from PIL import Image
 
 from momentum_lab.errors import InputError
 from momentum_lab.events import LoggedEvent, SetFriction, SetGains
+from momentum_lab.experiments.least_span import LEAST
 from momentum_lab.experiments.run_plots import along, over_time, png
 from momentum_lab.experiments.run_report import checks, report
 from momentum_lab.experiments.run_table import header, table
@@ -153,3 +154,24 @@ def test_a_long_run_gives_a_thinner_table(run):
     lines = table(run, most=100).decode().splitlines()
     assert len(lines) == 1 + 100
     assert float(lines[2].split(",")[0]) == pytest.approx(5 * run.scenario.timestep)
+
+
+def test_a_robot_at_rest_looks_at_rest():
+    """Noise of millionths of a newton is no curve: every axis shows as much as the page does, and no spike is cut."""
+    still = FinishedRun.of(replayed(Run(Scenario("still", robot="g1"), (), ticks=40))[0])
+    axes = over_time(still).axes
+    for chart, least in zip(axes[1:], ("linear", "angular", "momenta"), strict=True):
+        low, high = chart.get_ylim()
+        assert (low, high) == (-LEAST[least], LEAST[least])
+        assert not chart.texts
+    low, high = axes[0].get_ylim()
+    assert high - low > 2.0 * LEAST["places"]
+
+
+def test_what_is_larger_than_the_least_is_seen_whole():
+    hard = Scenario("hard", robot="g1", pushes=(Push(force=120.0, start=0.01),))
+    chart = over_time(FinishedRun.of(replayed(Run(hard, (), ticks=150))[0])).axes[3]
+    drawn = np.concatenate([line.get_ydata() for line in chart.get_lines()])
+    low, high = chart.get_ylim()
+    assert low <= -LEAST["momenta"]
+    assert high > drawn.max() > LEAST["momenta"]

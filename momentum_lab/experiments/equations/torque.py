@@ -14,7 +14,8 @@ from momentum_lab.control.computed_torque import (
     joint_feedback,
 )
 from momentum_lab.control.controller import ControlOutput
-from momentum_lab.control.foot_forces import FootForces, Footing, ForceBounds
+from momentum_lab.control.foot_forces import FootForces, ForceBounds, LoadSharing
+from momentum_lab.control.footing import Footing
 from momentum_lab.experiments.equations.equation import Equation
 from momentum_lab.experiments.equations.scenes import (
     Scene,
@@ -49,11 +50,11 @@ def _accelerations(robot: RobotModel, seed: int) -> float:
 
 def _modest_forces(scene: Scene) -> FootForces:
     """Admissible foot forces for a momentum rate that two feet can give."""
-    footing = Footing(scene.robot)
     bounds = ForceBounds(friction=0.6, normal_moment=0.018, least_force=0.02 * scene.weight)
     rate = scene.robot.mass * scene.rng.uniform(-0.1, 0.1, 6) * [1.0, 1.0, 1.0, 0.5, 0.5, 0.1]
     force = rate[:3] + [0.0, 0.0, scene.weight]
-    return footing.share(footing.stance_feet(scene.dynamics, _BOTH, 0.005), force, rate[3:], bounds)
+    stance = Footing(scene.robot).stance_feet(scene.dynamics, _BOTH, 0.005)
+    return LoadSharing(scene.robot).share(stance, force, rate[3:], bounds)
 
 
 def _objective(scene: Scene, feet: FootForces) -> tuple[np.ndarray, np.ndarray]:
