@@ -209,6 +209,9 @@ def cone_impulses(
         left, product = unbalanced(delassus, drift, points), products(points, friction)
         violation = max(np.abs(left).max(), np.abs(product).max())
         if violation <= precision:
+            for i in range(len(points)):  # what is felt by no velocity is no touch
+                if delassus[3 * i + 2, 3 * i + 2] * points[i, 2] <= precision:
+                    points[i, :3] = 0.0
             return points[:, :3].copy().ravel(), violation, iteration
         answer, stiffness = eliminated(points, friction)
         factors = stiffened(delassus, stiffness)
