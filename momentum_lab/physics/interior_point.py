@@ -31,6 +31,8 @@ _SHORT = 0.1
 _LEAST_SPEED = 0.01
 # kappa ends at this part of the precision.
 _LEAST_KAPPA = 0.02
+# n s of all points, too: so nothing is left on a point that needs more than this, m/s, to close its gap in a step.
+_HOVERING = 0.1
 
 
 @compiled(f"{_MATRIX}({_MATRIX}, {_VECTOR})")
@@ -208,7 +210,7 @@ def cone_impulses(
     for iteration in range(_MAX_ITERATIONS):
         left, product = unbalanced(delassus, drift, points), products(points, friction)
         violation = max(np.abs(left).max(), np.abs(product).max())
-        if violation <= precision:
+        if violation <= precision and product[:, 0].max() <= _HOVERING * precision:
             for i in range(len(points)):  # what is felt by no velocity is no touch
                 if delassus[3 * i + 2, 3 * i + 2] * points[i, 2] <= precision:
                     points[i, :3] = 0.0

@@ -72,6 +72,16 @@ def test_all_points_obey_signorini_and_coulomb(robot):
         assert np.abs(braking).max() < 2 * PRECISION + scale
 
 
+@pytest.mark.parametrize("opening", [0.11, 1.0, 10.0])
+def test_a_point_that_hovers_is_not_touched_at_all(opening):
+    """A fall begins with the first touch of another body than the feet: next to nothing would be a fall."""
+    drift = np.array([0.3, 0.0, -1.0, 0.0, 0.2, opening])
+    impulse, violation, _ = cone_impulses(np.eye(6), drift, np.array([0.7, 0.7]), PRECISION)
+    assert violation <= PRECISION
+    assert abs(impulse[2] - 1.0) < 2 * PRECISION  # the other one carries what it has to
+    assert np.array_equal(impulse[3:], np.zeros(3))
+
+
 def test_velocities_are_those_of_pinocchios_admm(robot):
     """Where that converges; it is right to 1e-6 m/s of its points, which light links multiply."""
     compared = 0
