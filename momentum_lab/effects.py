@@ -11,6 +11,7 @@ from momentum_lab.events import (
     HoldPush,
     LetGo,
     MoveGround,
+    Reset,
     SessionEvent,
     SetFriction,
     StopGround,
@@ -54,6 +55,8 @@ def pushed_after(pushed: Pushed, event: SessionEvent, robot: RobotModel, time: f
             return pushed.held_from(time, sized(push, robot))
         case LetGo():
             return pushed.let_go(time)
+        case Reset():
+            return Pushed()
     return pushed
 
 

@@ -1,7 +1,6 @@
 """The conductor: events in, ticks on, samples out. The same scenario and events give the same bits.
 
-It keeps the world and the clock; between what the robot senses and what its motors are asked for stands
-`momentum_lab.steering`.
+It keeps the world and the clock; `momentum_lab.steering` is between the robot's senses and its motors.
 """
 
 from __future__ import annotations
@@ -143,8 +142,7 @@ class Session:
         """All pushes there will be once some events have been done at the start of the next tick."""
         pushed = self._pushed
         for event in events:
-            cleared = isinstance(event, Reset)
-            pushed = Pushed() if cleared else pushed_after(pushed, event, self.robot, self.time)
+            pushed = pushed_after(pushed, event, self.robot, self.time)
         return pushed.until(self.time, self.scenario.timestep)
 
     @property
@@ -255,8 +253,7 @@ class Session:
         """What will be the case after an event that comes after those in the inbox; refuses what cannot be done."""
         robot, engine = self.robot, self.scenario.engine
         choices, ground = self._coming if self._inbox else (self.choices, self._ground)
-        choices = choices.after(event, robot)
-        ground = ground_after(ground, event, robot, self.time)
+        choices, ground = choices.after(event, robot), ground_after(ground, event, robot, self.time)
         if isinstance(event, Reset):
             ground = self._first_ground
         check_mismatch(engine, choices.mismatch)
@@ -294,8 +291,7 @@ class Session:
         self.state = self._start
         self._pushed = Pushed(self._scripted)
         self.fall = None
-        self.solver_failures = 0
-        self.last_failure = None
+        self.solver_failures, self.last_failure = 0, None
         self._tick_of_run = 0
         self._ground = self._first_ground
         self._line = ()

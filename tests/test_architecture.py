@@ -16,7 +16,7 @@ RELATIVE = "by a relative path"
 
 # From bottom to top; a room may import itself and everything on lower floors.
 FLOORS: tuple[frozenset[str], ...] = (
-    frozenset({"", "errors", "paths", "compiled", "cholesky", "palette"}),
+    frozenset({"", "errors", "paths", "compiled", "cholesky", "palette", "plain"}),
     frozenset({"robot"}),
     frozenset({"momentum"}),
     frozenset({"control", "physics"}),

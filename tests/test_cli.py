@@ -441,6 +441,10 @@ def test_mujoco_answers_and_says_so_in_summary_and_trace(tmp_path: Path, capsys:
     meta = load_trace(path).meta
     assert meta["scenario"]["engine"] == "mujoco"
     assert meta["versions"]["mujoco"][0].isdigit()
+    assert main(["run", "stand", *SHORT, "--engine", "mujoco"]) == 0
+    assert re.search(r"engine\W+mujoco", capsys.readouterr().out)
+    assert main(["run", "stand", *SHORT]) == 0
+    assert "engine" not in capsys.readouterr().out  # the usual one goes without saying
 
 
 @pytest.mark.parametrize("command", ["run stand", "limit"])

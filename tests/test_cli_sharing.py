@@ -69,6 +69,18 @@ def test_a_run_file_is_replayed(shared, tmp_path: Path, capsys: Output) -> None:
     assert "nothing to compare" in capsys.readouterr().out
 
 
+def test_a_replay_says_what_was_done(shared, tmp_path: Path, capsys: Output) -> None:
+    pushed = Run(
+        Scenario("mine", robot="g1", pushes=(Push(force=9.0, start=0.0),)), shared.events[:1], ticks=20
+    )
+    for name, run in (("theirs.json", shared), ("mine.json", pushed)):
+        (tmp_path / name).write_bytes(encoded(run))
+        assert main(["replay", str(tmp_path / name)]) == 0
+    output = capsys.readouterr().out
+    assert "theirs, g1: 80 ticks, 0 pushes in its scenario, 2 events\n" in output
+    assert "mine, g1: 20 ticks, 1 push in its scenario, 1 event\n" in output
+
+
 def test_a_trace_that_was_changed_is_found_out(tmp_path: Path, capsys: Output) -> None:
     path = tmp_path / "t.npz"
     assert main(["run", "stand", "--robot", "g1", "--seconds", "0.02", "--json", "--out", str(path)]) == 0

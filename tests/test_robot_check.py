@@ -51,12 +51,15 @@ def test_a_robot_that_cannot_stand_is_explained(write_biped: WriteBiped, capsys:
         ("robot-check", r"robot: got nothing; allowed: a .urdf, a robot's .toml, or one of g1, "),
         ("robot-check nope", "robot: got nope; allowed: one of g1, "),
         ("robot-check nope.urdf --soles a,b", "robot: got nope.urdf; allowed: a .urdf that exists"),
-        ("robot-check {urdf}", "--soles: got nothing; allowed: LEFT,RIGHT: two frames of the URDF"),
+        (
+            "robot-check {urdf}",
+            "soles: got nothing; allowed: LEFT,RIGHT: two frames of the URDF; at the ends",
+        ),
         ("robot-check {urdf} --soles head", "--soles: got head; allowed: LEFT,RIGHT: two frames of the URDF"),
         ("robot-check {urdf} --soles head,head", "--soles: got head,head; allowed: LEFT,RIGHT: two frames"),
         (
             "robot-check {urdf} --soles heel,toe",
-            "--soles: got heel; allowed: frames of the URDF; at the ends",
+            "--soles: got heel, toe; allowed: LEFT,RIGHT: two frames of the URDF; at the ends of its tree: ",
         ),
         ("robot-check {urdf} --soles base,head", "--soles: got base,head; allowed: frames of two feet"),
         ("robot-check {toml} --soles a,b", "--soles: got a,b; allowed: together with a .urdf"),

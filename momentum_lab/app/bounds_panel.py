@@ -98,4 +98,4 @@ def _number(value: float) -> str:
     """A whole number with room for a sign and four figures; a dash where there is none, as for a CoP in the air."""
     if not (math.isfinite(value) and abs(value) < 1e5):
         return _NONE
-    return steady(value + 0.0, 0, _WHOLE).replace("-", "−")
+    return steady(value, 0, _WHOLE).replace("-", "−")

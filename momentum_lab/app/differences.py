@@ -11,6 +11,7 @@ from momentum_lab.app.wire import Truth
 from momentum_lab.choice_words import NOTHING, choices_in_words, differing, gains_in_words, names_by
 from momentum_lab.choices import CHOICES
 from momentum_lab.physics.push import Push
+from momentum_lab.plain import plain
 
 LAY_THERE = "had fallen already"
 """Of a robot that was put beside one that lay on the ground."""
@@ -48,7 +49,7 @@ def names_of(first: Truth, second: Truth) -> tuple[str, str]:
 
 def push_in_words(push: Push) -> str:
     """Force, duration and direction, and what else a push says."""
-    words = f"{push.force or 0.0:.0f} N, {1e3 * push.duration:.0f} ms, {push.direction_deg:.0f}°{push.tilt}"
+    words = f"{push.force or 0.0:.0f} N, {1e3 * push.duration:.0f} ms, {plain(push.direction_deg, '.0f')}°{push.tilt}"
     if push.height is not None:
         words += f", {push.height:g} m high"
     if push.body is not None:

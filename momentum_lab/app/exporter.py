@@ -13,6 +13,7 @@ from momentum_lab.app.birth import born
 from momentum_lab.app.wire import RunTaken, rows_of
 from momentum_lab.choices import Choices
 from momentum_lab.errors import InputError, LabError
+from momentum_lab.experiments.window import around_pushes
 from momentum_lab.fall import Fall
 from momentum_lab.finished import FinishedRun
 from momentum_lab.provenance import provenance
@@ -136,13 +137,13 @@ def _report(run: FinishedRun) -> bytes:
 def _recording(run: FinishedRun) -> bytes:
     from momentum_lab.app.recorder import html_file
 
-    return html_file(run)
+    return html_file(around_pushes(run))
 
 
 def _viser(run: FinishedRun) -> bytes:
     from momentum_lab.app.recorder import viser_file
 
-    return viser_file(run)
+    return viser_file(around_pushes(run))
 
 
 MAKERS: dict[str, Callable[[FinishedRun], bytes]] = {

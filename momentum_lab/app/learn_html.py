@@ -8,6 +8,7 @@ from html import escape
 from momentum_lab.app.learn_style import BLUE, GREEN, INK, LIST, MINE, PALE, RED, STYLE
 from momentum_lab.lesson.equation import symbol_mathml
 from momentum_lab.lesson.record import EquationRecord, StepRecord
+from momentum_lab.plain import plain
 
 LETTERS = "ABCDEFGH"
 # A number that is no further from the measured one than this part of what could be predicted is close.
@@ -178,6 +179,6 @@ def _number(value: float, step: StepRecord) -> str:
 
 def _short(value: float) -> str:
     """A number with three figures, its power of ten written as people do."""
-    figures, _, power = f"{value:.3g}".partition("e")
+    figures, _, power = plain(value, ".3g").partition("e")
     written = f"{figures}\u202f·\u202f10<sup>{int(power)}</sup>" if power else figures
     return written.replace("-", "−")

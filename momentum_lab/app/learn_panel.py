@@ -144,8 +144,9 @@ class LearnPanel:
         try:
             record = self._library.rehearse(entry.file, self._truth.robot)
         except LabError as error:
-            if not self._closed:
-                self._show_error(str(error))
+            with self._lock:
+                if self._entry is entry and not self._closed:  # or the person has gone elsewhere meanwhile
+                    self._show_error(str(error))
             return
         self._remembered.wait()
         if not self._closed:

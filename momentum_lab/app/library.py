@@ -52,6 +52,8 @@ class Library:
         self._lock = threading.Lock()
         self._reading = threading.Lock()
         self._known: dict[tuple[_Version, str], LessonRecord] = {}
+        # One for each rehearsal: who asks for the same waits for it, who asks for another does not.
+        self._rehearsing: dict[tuple[_Version, str], threading.Lock] = {}
         self._faults: dict[_Version, str] = {}
 
     def entries(self) -> list[Entry]:
@@ -82,6 +84,8 @@ class Library:
                 str(file), "nothing", f"a script that can be read ({error.strerror})"
             ) from error
         with self._lock:
+            rehearsing = self._rehearsing.setdefault(key, threading.Lock())
+        with rehearsing:
             if key not in self._known:
                 self._known[key] = rehearsed_apart(file, robot)
             return self._known[key]

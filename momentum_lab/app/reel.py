@@ -97,6 +97,12 @@ class Reel:
             side,
         )
 
+    @property
+    def span(self) -> tuple[float, float]:
+        """Times of the first and the last picture, s of the run."""
+        times = self.rows[:, self.robot.layout.slices["time"]]
+        return float(times[0, 0]), float(times[-1, 0])
+
     def time(self, picture: int) -> float:
         """When a picture comes, s since the first one."""
         return picture / self.rate

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import threading
 import time
@@ -14,9 +13,12 @@ import viser
 
 from momentum_lab.app import html, share_html
 from momentum_lab.app.exporter import made_elsewhere
+from momentum_lab.app.film_words import before_film, during_film
 from momentum_lab.app.kept_before import KeptBefore
+from momentum_lab.app.reel import Reel
 from momentum_lab.app.wire import Opened, RunTaken, Truth
 from momentum_lab.errors import LabError
+from momentum_lab.experiments.run_table import thinned_words
 from momentum_lab.run_file import Run, decoded, encoded
 from momentum_lab.share_code import from_code, link, to_code
 
@@ -36,6 +38,10 @@ _FILES = {
     "film (.mp4)": ("film", ".mp4"),
     "small film (.mp4)": ("small film", ".mp4"),
 }
+_HINT = (
+    "Report, trace and table hold the last minute since the robot stood up; plots, recordings and films the part of "
+    "it around the pushes. All hold both robots."
+)
 _WITHOUT_SAMPLES = ("run", "view")
 _IN_SIGHT = "This tab draws it: keep it in sight; its own picture stands still."
 # Height of a film, pixels.
@@ -53,7 +59,8 @@ class Sharing:
         tell: shows a person what was wrong.
         send: lets the browser save a file of a name.
         view: a picture of what the browser shows, as a PNG file.
-        film: a run as an .mp4 file so many pixels high; it tells the fraction that is done, and ends when that
+        reel: the pictures of a run.
+        film: pictures as an .mp4 file so many pixels high; it tells the fraction that is done, and ends when that
             raises an error.
         url: where the lab is served.
         take_back: puts the run before the opened one on stage again.
@@ -67,7 +74,8 @@ class Sharing:
     tell: Callable[[str], None]
     send: Callable[[str, bytes], None]
     view: Callable[[], bytes]
-    film: Callable[[RunTaken, int, Callable[[float], None]], bytes]
+    reel: Callable[[RunTaken], Reel]
+    film: Callable[[Reel, int, Callable[[float], None]], bytes]
     url: str
     take_back: Callable[[], None]
     say: Callable[[str], None]
@@ -89,6 +97,7 @@ class SharePanel:
     ) -> None:
         self._sharing, self._clock = sharing, clock
         self._busy = threading.Lock()
+        self._pace: dict[int, float] = {}  # how long a picture of a film so high took, s
         self._told = ""
         gui.add_html(html.sentence(_INTRODUCTION))
         make = gui.add_button("Make a code", icon=viser.Icon.QRCODE, hint="Of the run as it is now.")
@@ -107,7 +116,7 @@ class SharePanel:
         self._what = gui.add_dropdown(
             "file",
             tuple(_FILES),
-            hint="All but the run file hold the last minute since the robot stood up. All hold both robots.",
+            hint=_HINT,
         )
         self._download = gui.add_button("Download", color="gray", icon=viser.Icon.DOWNLOAD)
         self._progress = gui.add_html("", visible=False)
@@ -167,43 +176,47 @@ class SharePanel:
 
     def _save(self) -> None:
         kind, end = _FILES[self._what.value]
-        self._download.disabled = True
+        self._download.disabled, note = True, ""
         try:
             self._show(f"{self._what.value}: being made, the run goes on.")
             take = self._sharing.take_run if kind in _WITHOUT_SAMPLES else self._sharing.take_recording
             taken = take()
-            self._sharing.send(file_name(taken.run) + end, self._content(kind, taken))
+            content = self._content(kind, taken)
+            self._sharing.send(file_name(taken.run) + end, content)
+            note = thinned_words(content, taken.run.scenario.timestep) if kind == "table" else ""
         finally:
             self._download.disabled = False
-            self._show("")
+            self._show(note)
 
     def _content(self, kind: str, taken: RunTaken) -> bytes:
         if kind == "view":
             return self._sharing.view()
         if kind in _FILMS:
-            return self._film(taken, _FILMS[kind])
+            return self._film(self._sharing.reel(taken), _FILMS[kind])
         return encoded(taken.run) if kind == "run" else made_elsewhere(kind, taken)
 
-    def _film(self, taken: RunTaken, lines: int) -> bytes:
+    def _film(self, reel: Reel, lines: int) -> bytes:
         self._stopped.clear()
         self._stop.visible = True
+        self._show(f"{before_film(reel, self._pace.get(lines))} {_IN_SIGHT}")
         percents, begun = set[int](), self._clock()
 
         def report(fraction: float) -> None:
             if self._stopped.is_set():
                 raise LabError("The film was stopped.")
-            percent = int(100.0 * fraction)
+            passed, percent = self._clock() - begun, int(100.0 * fraction)
+            self._pace[lines] = passed / (fraction * len(reel.rows))
             if percent not in percents:
                 percents.add(percent)
-                self._show(f"film: {percent} % taken{_left(fraction, self._clock() - begun)}. {_IN_SIGHT}")
+                self._show(f"{during_film(reel, fraction, passed)} {_IN_SIGHT}")
 
         try:
-            return self._sharing.film(taken, lines, report)
+            return self._sharing.film(reel, lines, report)
         finally:
             self._stop.visible = False
 
     def _show(self, words: str) -> None:
-        """One line about a file that is being made; none without words."""
+        """One line about a file that is being made or was made last; none without words."""
         self._progress.content = html.sentence(words)
         self._progress.visible = bool(words)
 
@@ -212,12 +225,6 @@ def file_name(run: Run) -> str:
     """A name for files about a run: small letters, digits, hyphens."""
     words = f"{run.scenario.name}-{run.scenario.robot.removesuffix('.toml').rpartition('/')[2]}"
     return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")[:80] or "run"
-
-
-def _left(fraction: float, passed: float) -> str:
-    """How long a film still takes, for people, if it goes on as since it was begun."""
-    seconds = passed * (1.0 / fraction - 1.0) if fraction else 0.0
-    return f", {math.ceil(seconds / 60.0)} min to go" if seconds > 90.0 else f", {seconds:.0f} s to go"
 
 
 def opened_words(opened: Opened) -> str:

@@ -17,6 +17,7 @@ from momentum_lab.app.widgets import Bound, Post
 from momentum_lab.app.wire import Truth
 from momentum_lab.events import Branch, LookBack, Pause, Play, Reset, SetSpeed, StepOnce
 from momentum_lab.palette import BLUE
+from momentum_lab.plain import plain
 from momentum_lab.status import Status
 
 INVITATION = "Push the robot: press P or the button."
@@ -210,7 +211,9 @@ def _sentence(truth: Truth) -> str:
     push = truth.push
     if push is None:
         return ""
-    towards = _DIRECTIONS.get(round(push.direction_deg) % 360, f"{push.direction_deg:.0f}° from forward")
+    towards = _DIRECTIONS.get(
+        round(push.direction_deg) % 360, f"{plain(push.direction_deg, '.0f')}° from forward"
+    )
     where = "" if push.body is None else f" on the {push.body.replace('_', ' ')}"
     return (
         f"Last push: {push.force or 0.0:.0f} N for {1e3 * push.duration:.0f} ms {towards}{push.tilt}{where}."

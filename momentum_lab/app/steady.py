@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from momentum_lab.plain import plain
+
 FIGURE_SPACE = "\u2007"
 
 
@@ -14,9 +16,9 @@ def blanks(value: float, decimals: int, whole: int) -> str:
         whole: for how many figures before its point, a minus sign included, there is room.
     """
     room = whole + decimals + bool(decimals)
-    return FIGURE_SPACE * max(0, room - len(f"{value:.{decimals}f}"))
+    return FIGURE_SPACE * max(0, room - len(plain(value, f".{decimals}f")))
 
 
 def steady(value: float, decimals: int, whole: int) -> str:
     """The number with the blanks before it; the arguments are those of `blanks`."""
-    return blanks(value, decimals, whole) + f"{value:.{decimals}f}"
+    return blanks(value, decimals, whole) + plain(value, f".{decimals}f")

@@ -38,6 +38,7 @@ from momentum_lab.app.wire import Frame, RunTaken, Truth, rows_of
 from momentum_lab.app.world import add_floor, add_world
 from momentum_lab.errors import InputError
 from momentum_lab.events import Branch, Event
+from momentum_lab.experiments.window import around_pushes
 from momentum_lab.recording import Sample
 from momentum_lab.run_file import Run
 
@@ -218,6 +219,7 @@ class Visitor:
             self.tell,
             lambda name, content: self._client.send_file_download(name, content, save_immediately=True),
             lambda: view_of(self._client),
+            self._reel,
             self._film,
             self._url,
             self._link.take_back,
@@ -225,11 +227,14 @@ class Visitor:
             self._notices.warn,
         )
 
-    def _film(self, taken: RunTaken, lines: int, report: Callable[[float], None]) -> bytes:
+    def _reel(self, taken: RunTaken) -> Reel:
+        """The pictures of a run, around its pushes."""
+        return Reel.of(around_pushes(finished(taken)), self._shelf.get(taken.run.scenario.robot))
+
+    def _film(self, reel: Reel, lines: int, report: Callable[[float], None]) -> bytes:
         """A run as this tab would show it, as an .mp4 file; the tab's own picture stands still meanwhile."""
         if self._panels is None:
             raise InputError("film", "a page without panels", "a page that has been loaded")
-        reel = Reel.of(finished(taken), self._shelf.get(taken.run.scenario.robot))
         self._filming.set()
         try:
             return film(self._client, reel, self._panels.settings, lines, report)

@@ -14,6 +14,7 @@ from momentum_lab.experiments.claims import Claim, Figure
 from momentum_lab.experiments.figures import figure_named
 from momentum_lab.experiments.play import Played, judged, play, report
 from momentum_lab.experiments.writing import paths, writable_folder, write
+from momentum_lab.plain import plain
 from momentum_lab.robot.catalog import load_spec
 from momentum_lab.scenario import Scenario
 
@@ -63,6 +64,6 @@ def _played(chosen: Figure, scenarios: dict[str, Scenario]) -> Played:
 def _show(chosen: Figure, claims: list[Claim]) -> None:
     table = Table("", "claim", "measured", "allowed", title=f"{chosen.name}: {chosen.title}")
     for claim in claims:
-        value = f"{claim.measured:.4g}" if isinstance(claim.measured, float) else claim.measured
+        value = plain(claim.measured, ".4g") if isinstance(claim.measured, float) else claim.measured
         table.add_row("holds" if claim.holds else "FAILS", claim.text, value, claim.allowed)
     Console(markup=False).print(table)

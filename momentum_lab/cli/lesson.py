@@ -14,6 +14,7 @@ from momentum_lab.lesson.loader import find_lesson, lesson_folder
 from momentum_lab.lesson.parts import Choice, Explain, Lesson, Number, Step
 from momentum_lab.lesson.playing import Played, play_lesson, report, told
 from momentum_lab.lesson.reading import read_lesson
+from momentum_lab.plain import plain
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.scenario import changed, load_scenario
 from momentum_lab.session import Session
@@ -91,10 +92,10 @@ def _lines(step: Step, played: Played) -> list[str]:
         marks = ["->" if place in record["right"] else "  " for place in range(len(step.options))]
         return [text, *(f" {mark} {words}" for mark, words in zip(marks, record["options"], strict=True))]
     if isinstance(step, Number):
-        return [text, f" -> {record['measured']:.4g} {record['unit']}"]
+        return [text, f" -> {plain(record['measured'], '.4g')} {record['unit']}"]
     if isinstance(step, Explain):
         symbols = (
-            f"   {name} = {value:{step.equation.symbols[name].spec}} {step.equation.symbols[name].unit}"
+            f"   {name} = {plain(value, step.equation.symbols[name].spec)} {step.equation.symbols[name].unit}"
             f"  {step.equation.symbols[name].words}"
             for name, value in record["symbols"].items()
         )
@@ -106,6 +107,6 @@ def _lines(step: Step, played: Played) -> list[str]:
 def _show_claims(console: Console, claims: tuple[Claim, ...]) -> None:
     table = Table("", "claim", "measured", "allowed")
     for claim in claims:
-        value = f"{claim.measured:.4g}" if isinstance(claim.measured, float) else claim.measured
+        value = plain(claim.measured, ".4g") if isinstance(claim.measured, float) else claim.measured
         table.add_row("holds" if claim.holds else "FAILS", claim.text, value, claim.allowed)
     console.print(table)

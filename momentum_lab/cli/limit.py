@@ -14,6 +14,7 @@ from momentum_lab.cli.progress import progress
 from momentum_lab.errors import InputError
 from momentum_lab.experiments.push_limit import PushLimit, push_limit
 from momentum_lab.physics.push import Push
+from momentum_lab.plain import plain
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.scenario import Scenario
 
@@ -95,7 +96,7 @@ def _show(limits: Limits) -> None:
     table = Table("direction", "survived", "impulse", "ratio", "just beyond", title=title)
     for found in limits.limits:
         table.add_row(
-            f"{found.direction_deg:g} {_WORDS.get(found.direction_deg % 360.0, '')}".strip(),
+            f"{plain(found.direction_deg, 'g')} {_WORDS.get(found.direction_deg % 360.0, '')}".strip(),
             f"{found.force:.0f} N",
             f"{found.impulse:.1f} N s",
             f"{found.impulse_ratio:.2f}",

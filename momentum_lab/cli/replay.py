@@ -40,9 +40,7 @@ def replay(args: Namespace) -> int:
     if args.json:
         print(msgspec.json.encode(_plain(session, agreement, others)).decode())
     else:
-        print(
-            f"{run.scenario.name}, {session.robot.spec.name}: {session.ticks} ticks, {len(run.events)} events"
-        )
+        print(f"{run.scenario.name}, {session.robot.spec.name}: {session.ticks} ticks, {_done(run)}")
         print(
             "nothing to compare: the file does not say how the run ended"
             if agreement is None
@@ -51,6 +49,12 @@ def replay(args: Namespace) -> int:
         for name, (then, now) in others.items():
             print(f"recorded with {name} {then}, replayed with {now}")
     return 0 if agreement is None or agreement.agrees else 1
+
+
+def _done(run: Run) -> str:
+    """What was done in a run: the pushes of its scenario, and all that came on top."""
+    pushes, events = len(run.scenario.pushes), len(run.events)
+    return f"{pushes} push{'' if pushes == 1 else 'es'} in its scenario, {events} event{'' if events == 1 else 's'}"
 
 
 def _agreement(run: Run, trace: Trace | None, session: Session) -> Agreement | None:

@@ -72,9 +72,7 @@ def _candidate(args: Namespace) -> _Candidate:
             )
         return _Candidate(load_spec(args.robot))
     urdf = _urdf(args.robot)
-    if args.soles is None:
-        raise InputError("--soles", "nothing", "LEFT,RIGHT: two frames of the URDF")
-    proposal = propose(urdf, args.soles)
+    proposal = propose(urdf, args.soles or ())
     return _Candidate(proposal.spec, proposal.remarks, proposal.fault)
 
 

@@ -17,9 +17,11 @@ from momentum_lab.cli.choices import chosen_run
 from momentum_lab.cli.progress import interruptible, progress
 from momentum_lab.errors import InputError, SimulationError
 from momentum_lab.headless import Timing, run_headless
+from momentum_lab.plain import plain
 from momentum_lab.provenance import provenance
 from momentum_lab.replay import Agreement, Script, end_agreement, prepared
 from momentum_lab.run_file import Run
+from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
 from momentum_lab.summary import Summary, summarize
 from momentum_lab.trace import save_trace, writable_file
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
 
 Made = TypeVar("Made")
 _MOST_BOUNDS = 5
+_USUAL_ENGINE = Scenario("").engine
 
 
 def run(args: Namespace) -> int:
@@ -100,6 +103,8 @@ def show(summary: Summary) -> None:
     robots = [summary] if summary.beside is None else [summary, summary.beside]
     for lines in zip(*map(_lines, robots), strict=True):
         table.add_row(lines[0][0], *(text for _, text in lines))
+    if summary.engine != _USUAL_ENGINE:
+        table.add_row("engine", *(each.engine for each in robots))
     if summary.beside is not None:
         table.add_row("controller", *(each.controller for each in robots))
         table.add_row("priority", *(f"{each.priority:g}" for each in robots))
@@ -172,7 +177,11 @@ def _timed(session: Session, cue: Callable[[Session], None], ticks: int) -> tupl
 
 
 def _lines(summary: Summary) -> list[tuple[str, str]]:
-    margin = "never supported" if summary.min_cop_margin is None else f"{1e3 * summary.min_cop_margin:.1f} mm"
+    margin = (
+        "never supported"
+        if summary.min_cop_margin is None
+        else f"{plain(1e3 * summary.min_cop_margin, '.1f')} mm"
+    )
     return [
         ("result", _result(summary)),
         ("push", _push(summary)),

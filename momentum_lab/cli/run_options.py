@@ -60,7 +60,9 @@ def choice_arguments(parser: Parser) -> None:
         help="let the real robot differ from its model: mass_error=0.1, torque_delay_ms=2; may be repeated",
     )
     parser.add_argument(
-        "--preset", metavar="NAME", help="gains by name: soft, chapter-like, stiff, or your own"
+        "--preset",
+        metavar="NAME",
+        help="gains by name: soft, chapter-like, stiff, one kept in the Control tab, or the path of a .toml",
     )
 
 

@@ -59,17 +59,24 @@ def presets(controller: str) -> dict[str, Preset]:
 
 
 def preset_named(name: str, controller: str) -> Preset:
-    """The preset of that name.
+    """The preset of that name, or in that file.
+
+    Args:
+        name: a shipped one, one's own, or the path of a .toml file.
+        controller: whose gains they are.
 
     Raises:
         InputError: the controller has none, or its file is no preset.
     """
     controller_entry(controller)
+    if name.endswith(".toml"):
+        return _read(Path(name), controller)
     own = _own_folder(controller) / f"{name}.toml"
     if name in SHIPPED:
         return _read(_shipped(controller, name), controller)
     if not re.fullmatch(_NAME, name) or not own.is_file():
-        raise InputError("preset", name, f"one of {', '.join(presets(controller))} for {controller}")
+        known = ", ".join(presets(controller))
+        raise InputError("preset", name, f"one of {known} for {controller}, or the path of a .toml file")
     return _read(own, controller)
 
 

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure as Picture
 from momentum_lab import palette
 from momentum_lab.finished import FinishedRun
 from momentum_lab.palette import css
+from momentum_lab.plain import plain
 from momentum_lab.session import Session
 
 # Each colour for the quantity that has it on the app's screen.
@@ -66,10 +67,10 @@ def legend_below(picture: Any, axes: Any) -> None:
     picture.legend(named.values(), named.keys(), loc="outside lower center", ncols=len(named), fontsize=9)
 
 
-def heading(title: str, session: Session | FinishedRun) -> str:
-    """The title of a picture with the robot and the push it got."""
+def heading(title: str, session: Session | FinishedRun, without: str = "no push") -> str:
+    """The title of a picture with the robot and the push it got, or some words if it got none."""
     pushes = "; ".join(f"{push.force:.0f} N for {push.duration:g} s" for push in session.pushes)
-    return f"{title}\n{session.robot.spec.title}, {pushes or 'no push'}"
+    return f"{title}\n{session.robot.spec.title}, {pushes or without}"
 
 
 def _drawn(lines: Sequence[Any]) -> np.ndarray:
@@ -112,7 +113,7 @@ def cut_spikes(axes: Any, least: float = -math.inf, tumbling: Sequence[Any] = ()
     axes.text(
         0.99,
         0.03,
-        f"a sole lands: spikes from {lowest:.0f} to {highest:.0f} are cut",
+        f"a sole lands: spikes from {plain(lowest, '.0f')} to {plain(highest, '.0f')} are cut",
         transform=axes.transAxes,
         fontsize=7,
         color=MUTED,

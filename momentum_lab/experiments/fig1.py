@@ -11,6 +11,7 @@ from momentum_lab.experiments.choice import chosen
 from momentum_lab.experiments.claims import Claim, Columns, Figure, Runs, at_least, at_most, largest, stands
 from momentum_lab.experiments.measured import ground_force, momentum_slope, push_end, times
 from momentum_lab.momentum.ground import GRAVITY
+from momentum_lab.plain import plain
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
 
@@ -178,7 +179,9 @@ def draw(runs: Runs) -> Any:
             worked, seen = scale * np.asarray(data[key]), scale * np.asarray(data[other])
             panel.plot(data["time [s]"], seen, color=color, lw=3.0, alpha=0.4, label=_said(other))
             panel.plot(data["time [s]"], worked, ":", color=INK, lw=1.2)
-            numbers.append(f"{name} = {worked[tick]:.1f} {unit}, against {seen[tick]:.1f} {unit}")
+            numbers.append(
+                f"{name} = {plain(worked[tick], '.1f')} {unit}, against {plain(seen[tick], '.1f')} {unit}"
+            )
             curves.append(seen)
         panel.plot([], [], ":", color=INK, lw=1.2, label="computed along the arrow")
         _frame(panel, curves)

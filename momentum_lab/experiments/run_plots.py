@@ -28,6 +28,7 @@ from momentum_lab.experiments.canvas import (
 from momentum_lab.experiments.least_span import LEAST
 from momentum_lab.experiments.second_curves import beside_momenta, beside_paths, beside_points, beside_rate
 from momentum_lab.experiments.thinned import Thinned, projected
+from momentum_lab.experiments.window import around_pushes, time_span
 from momentum_lab.finished import FinishedRun
 from momentum_lab.summary import corners_in_world
 
@@ -40,9 +41,10 @@ _LEAST_SUPPORT = 1.0
 def over_time(run: FinishedRun) -> Any:
     """Four plots over time, along the largest push: points and support, both rates, both momenta.
 
-    A robot beside the first is dashed.
+    Of a long run they show the part around its pushes. A robot beside the first is dashed.
     """
-    picture, axes = canvas(heading(_title(run), run), 4, 1, (8.0, 9.6), sharex=True)
+    run = around_pushes(run)
+    picture, axes = canvas(heading(_title(run), run, _no_push(run)), 4, 1, (8.0, 9.6), sharex=True)
     forward = along(run)
     linear = np.array([*forward, 0.0, 0.0, 0.0, 0.0])
     angular = np.array([0.0, 0.0, 0.0, -forward[1], forward[0], 0.0])
@@ -62,8 +64,9 @@ def over_time(run: FinishedRun) -> Any:
 def on_the_ground(run: FinishedRun) -> Any:
     """Paths of CoM, CoP and capture point from above, with the soles where they stood at first and at last.
 
-    A robot beside the first is dashed; only its points are shown.
+    Of a long run they show the part around its pushes. A robot beside the first is dashed; only its points are shown.
     """
+    run = around_pushes(run)
     picture, axes = canvas("On the ground, from above", 1, 1, (8.0, 5.2))
     column, chart = Thinned(run), axes[0, 0]
     corners = corners_in_world(run, column("sole_pose"))[..., :2]
@@ -163,3 +166,11 @@ def _limits(behind: np.ndarray, ahead: np.ndarray) -> tuple[float, float]:
 
 def _title(run: FinishedRun) -> str:
     return run.scenario.title or run.scenario.name
+
+
+def _no_push(run: FinishedRun) -> str:
+    """What to say of a run without a push: if its beginning is not recorded there may have been one then."""
+    there = time_span(run)
+    if there.start < 0.5 * run.scenario.timestep:
+        return "no push"
+    return f"the last {there.end - there.start:.0f} s hold no push"

@@ -17,10 +17,12 @@ from momentum_lab.errors import InputError
 from momentum_lab.events import MoveGround, SessionEvent, SetFriction
 from momentum_lab.experiments.both import both, different
 from momentum_lab.experiments.claims import Claim, at_most
+from momentum_lab.experiments.outcome import outcome
 from momentum_lab.experiments.run_plots import on_the_ground, over_time, png
 from momentum_lab.finished import FinishedRun
 from momentum_lab.headless import Timing
 from momentum_lab.physics.push import Push
+from momentum_lab.plain import plain
 from momentum_lab.provenance import versions
 from momentum_lab.share_code import to_code
 from momentum_lab.summary import Summary, summarize
@@ -63,7 +65,7 @@ def report(run: FinishedRun) -> bytes:
         f"<h1>{escape(title)}</h1>",
         f'<p class="dim">{escape(_setting(run))}</p>',
         *(
-            f'<p class="result">{escape(_of(name, _result(each, summary)))}</p>'
+            f'<p class="result">{escape(_of(name, outcome(each, summary)))}</p>'
             for name, each, summary in robots
         ),
         _section("Numbers", _numbers(robots)),
@@ -137,14 +139,6 @@ def _headed(words: str, name: str) -> str:
     return f"{words}: {name}" if name else words
 
 
-def _result(run: FinishedRun, summary: Summary) -> str:
-    if run.lay_there:
-        return "Had fallen already when it came"
-    if summary.fell and summary.fall_time is not None:
-        return f"Fell at {summary.fall_time:.2f} s: {summary.fall_reason}"
-    return f"Stands {'still' if summary.settled else 'and still moves'} after {summary.seconds:.2f} s"
-
-
 def _numbers(robots: Sequence[tuple[str, FinishedRun, Summary]]) -> str:
     """A column for each robot."""
     columns = [_figures(summary) for _, _, summary in robots]
@@ -163,7 +157,7 @@ def _figures(summary: Summary) -> list[tuple[str, str]]:
     margin = (
         "never supported"
         if summary.min_cop_margin is None
-        else f"{round(1e3 * summary.min_cop_margin, 1) + 0.0:g} mm"
+        else f"{plain(1e3 * summary.min_cop_margin, '.1f')} mm"
     )
     return [
         ("impulse of all pushes", f"{summary.impulse:.2f} N s"),
@@ -230,7 +224,7 @@ def _short(value: Any) -> str:
         return ", ".join(f"{key} {_short(inner)}" for key, inner in value.items() if inner is not None)
     if isinstance(value, list | tuple):
         return "; ".join(_short(inner) for inner in value)
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return plain(value, "g") if isinstance(value, float) else str(value)
 
 
 def _claims(claims: Iterable[Claim]) -> str:

@@ -33,6 +33,21 @@ def table(run: FinishedRun, most: int = MOST_ROWS) -> bytes:
     return file.getvalue().encode()
 
 
+def thinned_words(content: bytes, timestep: float) -> str:
+    """What to say of a table that does not hold every tick; nothing of one that does.
+
+    Args:
+        content: the CSV file.
+        timestep: of the run, s.
+    """
+    times = [float(row.partition(b",")[0]) for row in content.split(b"\r\n", 3)[1:3] if row]
+    every = round((times[1] - times[0]) / timestep) if len(times) == 2 else 1
+    if every == 1:
+        return ""
+    pace = f"a row each {1e3 * every * timestep:g} ms, to have {MOST_ROWS:,} rows at most"
+    return f"The table holds one tick in {every}, {pace}. The trace (.npz) holds every tick."
+
+
 def header(run: FinishedRun) -> list[str]:
     """The names of the columns: `quantity/foot or joint/component [unit]`, without a unit where there is none.
 

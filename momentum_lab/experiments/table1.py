@@ -23,6 +23,7 @@ from momentum_lab.experiments.claims import (
 )
 from momentum_lab.experiments.measured import com_moved, foot_cops, push_end, rate_gap, saturated, times
 from momentum_lab.momentum.ground import GRAVITY
+from momentum_lab.plain import plain
 from momentum_lab.scenario import Scenario, changed
 from momentum_lab.session import Session
 
@@ -171,7 +172,7 @@ def _written(axes: Any, columns: Columns) -> None:
 def _cell(value: Any) -> str:
     if isinstance(value, str):
         return value
-    return "-" if not np.isfinite(value) else f"{round(value, 2) + 0.0:.2f}"
+    return "-" if not np.isfinite(value) else plain(value, ".2f")
 
 
 FIGURE = Figure("table1", "All methods on the same push", scenarios, draw, table, claims)

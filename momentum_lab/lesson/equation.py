@@ -13,6 +13,7 @@ import numpy as np
 from momentum_lab.errors import InputError
 from momentum_lab.experiments.measured import times, upright
 from momentum_lab.lesson.parsing import parsed
+from momentum_lab.plain import plain
 from momentum_lab.session import Session
 
 _GREEK = {
@@ -134,7 +135,9 @@ def numbers(equation: Equation, session: Session, time: float) -> dict[str, floa
 def mathml(equation: Equation, values: Mapping[str, float]) -> str:
     """The equation as one MathML element, each symbol over its number; without values, bare."""
     symbols = equation.symbols
-    labels = {name: f"{value:{symbols[name].spec}} {symbols[name].unit}" for name, value in values.items()}
+    labels = {
+        name: f"{plain(value, symbols[name].spec)} {symbols[name].unit}" for name, value in values.items()
+    }
     return labelled(equation.text, labels)
 
 

@@ -11,6 +11,7 @@ from momentum_lab.lesson.equation import Equation, apart, course, labelled, resi
 from momentum_lab.lesson.loader import load_lesson, located
 from momentum_lab.lesson.parts import Choice, Compare, Explain, Number, Play, Step
 from momentum_lab.lesson.playing import Played, play_lesson, told
+from momentum_lab.plain import plain
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.scenario import Scenario
 from momentum_lab.session import Session
@@ -133,8 +134,7 @@ class LessonRecord(msgspec.Struct, frozen=True):
 
 def written(value: float, spec: str) -> str:
     """A number as people write it: with a minus, and none before a zero."""
-    text = f"{value:{spec}}"
-    return text.replace("-", "−") if text.strip("-0.") else text.lstrip("-")
+    return plain(value, spec).replace("-", "−")
 
 
 def rehearsed(file: str, robot: str) -> LessonRecord:

@@ -9,11 +9,14 @@ The points of one body move with its frame, so J = S J_f with the Jacobians J_f 
 S (J_f H^-1 J_f^T) S^T: on two feet 12 columns go through the Cholesky factor of H instead of 24. Pinocchio's own
 contact Cholesky needs twice the time for the same, and projected Gauss-Seidel was 4 % off after 2000 iterations,
 so the dense form with Pinocchio's ADMM is used (exact second-order cones, 5 iterations while standing,
-velocities right to 1e-10 m/s), started cold every step: a step depends on nothing but its arguments.
+velocities right to 1e-10 m/s). The many points of a robot that lies share its weight in no definite way, and ADMM
+needs a thousand iterations: there it is the fallback of an interior point method. Both start cold every step: a step
+depends on nothing but its arguments.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -23,14 +26,20 @@ import pinocchio as pin
 from momentum_lab.cholesky import factorize
 from momentum_lab.errors import SimulationError
 from momentum_lab.physics.contact_terms import closing_speed, contact_problem, moved, resting
+from momentum_lab.physics.interior_point import cone_impulses
 
 # Velocities are right to this, m/s: a foot that stands for a minute creeps by less than a micrometre.
 _PRECISION = 1e-9
-# With more points than two soles have, a robot lies on the ground: to converge as far would take ten times as
-# long, to no one's benefit.
+# With more points than two soles have, ADMM would take ten times as long to converge as far, to no one's benefit.
 _POINTS_OF_SOLES = 8
-_PRECISION_LYING = 1e-6
+_PRECISION_OF_MANY = 1e-6
 _MAX_ITERATIONS = 2000
+# Velocities of a robot that lies are right to this, m/s: in a minute it creeps by less than a micrometre.
+_PRECISION_LYING = 1e-8
+
+# Impulses (3 n,) in the friction cones with W lambda + g complementary to them, from W, g and the friction (n,), how
+# far they are from that, and how many iterations they took.
+_Solver = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, float, int]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,15 +120,27 @@ def solve_contact(
     )
     if answer[-1] <= _PRECISION:
         return ContactSolution(*answer, iterations=0)
-    return _sliding(mass_matrix, free_impulse, velocity, contacts, closing_speed(contacts.gap, timestep))
+    return _solved(mass_matrix, free_impulse, velocity, contacts, timestep, _by_admm)
 
 
-def _sliding(
+def solve_lying(
     mass_matrix: np.ndarray,
     free_impulse: np.ndarray,
     velocity: np.ndarray,
     contacts: Contacts,
-    closing: np.ndarray,
+    timestep: float,
+) -> ContactSolution:
+    """The same as `solve_contact`, fast for points on many bodies, which are never all at rest."""
+    return _solved(mass_matrix, free_impulse, velocity, contacts, timestep, _by_interior_point)
+
+
+def _solved(
+    mass_matrix: np.ndarray,
+    free_impulse: np.ndarray,
+    velocity: np.ndarray,
+    contacts: Contacts,
+    timestep: float,
+    solver: _Solver,
 ) -> ContactSolution:
     """The same by a solver, for points that slide, lift, or come to rest under other impulses than the smallest."""
     factor = mass_matrix.copy()
@@ -131,34 +152,31 @@ def _sliding(
         factor, free_impulse, velocity, contacts.frame_jacobian
     )
     drift -= contacts.ground_velocity
-    solver = _solve_cones(coupling, drift, closing, contacts)
-    impulse = solver.getPrimalSolution().copy()  # read-only
-    velocity, frame_impulse = moved(factor, half, free_velocity, contacts.spread, impulse)
-    return ContactSolution(
-        velocity=velocity,
-        impulse=impulse.reshape(-1, 3),
-        frame_impulse=frame_impulse,
-        residual=float(solver.getAbsoluteConvergenceResidual()),
-        iterations=int(solver.getIterationCount()),
-    )
-
-
-def _solve_cones(
-    coupling: np.ndarray, drift: np.ndarray, closing: np.ndarray, contacts: Contacts
-) -> pin.ADMMContactSolver:
-    """A solver that has found impulses in the friction cones with W lambda + g complementary to them."""
-    spread, size = contacts.spread, 3 * closing.size
-    delassus = spread @ coupling @ spread.T
+    spread = contacts.spread
     drift = spread @ drift
-    drift[2::3] += closing
-    solver = pin.ADMMContactSolver(size)
-    precision = _PRECISION if closing.size <= _POINTS_OF_SOLES else _PRECISION_LYING
+    drift[2::3] += closing_speed(contacts.gap, timestep)
+    impulse, residual, iterations = solver(spread @ coupling @ spread.T, drift, contacts.friction)
+    velocity, frame_impulse = moved(factor, half, free_velocity, spread, impulse)
+    return ContactSolution(velocity, impulse.reshape(-1, 3), frame_impulse, residual, iterations)
+
+
+def _by_interior_point(
+    delassus: np.ndarray, drift: np.ndarray, friction: np.ndarray
+) -> tuple[np.ndarray, float, int]:
+    answer = cone_impulses(delassus, drift, friction, _PRECISION_LYING)
+    return answer if answer[1] <= _PRECISION_LYING else _by_admm(delassus, drift, friction)
+
+
+def _by_admm(delassus: np.ndarray, drift: np.ndarray, friction: np.ndarray) -> tuple[np.ndarray, float, int]:
+    solver = pin.ADMMContactSolver(drift.size)
+    precision = _PRECISION if friction.size <= _POINTS_OF_SOLES else _PRECISION_OF_MANY
     solver.setAbsolutePrecision(precision)
     solver.setRelativePrecision(1e-3 * precision)
     solver.setMaxIterations(_MAX_ITERATIONS)
-    cones = _cones(tuple(contacts.friction.tolist()))
-    solver.solve(pin.DelassusOperatorDense(delassus), drift, cones, _no_compliance(size))
-    return solver
+    cones = _cones(tuple(friction.tolist()))
+    solver.solve(pin.DelassusOperatorDense(delassus), drift, cones, _no_compliance(drift.size))
+    impulse = solver.getPrimalSolution().copy()  # read-only
+    return impulse, float(solver.getAbsoluteConvergenceResidual()), int(solver.getIterationCount())
 
 
 @lru_cache(maxsize=64)

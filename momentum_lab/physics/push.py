@@ -12,6 +12,7 @@ import pinocchio as pin
 
 from momentum_lab.errors import InputError
 from momentum_lab.momentum.wrench import cross
+from momentum_lab.plain import plain
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics
 
@@ -88,7 +89,7 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     @property
     def towards(self) -> str:
         """Where it points, for people: `90°`, or `90°, 30° up`."""
-        return f"{self.direction_deg:g}°{self.tilt}"
+        return f"{plain(self.direction_deg, 'g')}°{self.tilt}"
 
     @property
     def tilt(self) -> str:

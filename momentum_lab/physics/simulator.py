@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,13 +11,14 @@ import numpy as np
 from momentum_lab.compiled import compiled
 from momentum_lab.momentum.ground import GRAVITY
 from momentum_lab.momentum.wrench import shift_wrench, sum_wrenches
-from momentum_lab.physics.contact import solve_contact
+from momentum_lab.physics.body_touch import BodyPoints
+from momentum_lab.physics.contact import ContactSolution, solve_contact, solve_lying
 from momentum_lab.physics.ground import Ground
 from momentum_lab.physics.implicit_torque import ImplicitTorque
 from momentum_lab.physics.joint_friction import joint_friction
 from momentum_lab.physics.joint_stops import joint_stops
 from momentum_lab.physics.push import Push, apply_pushes
-from momentum_lab.physics.touch import BodyPoints, SolePoints, Touches, together
+from momentum_lab.physics.touch import SolePoints, Touches, near_points, together
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import Dynamics, State
 
@@ -79,8 +81,8 @@ class Simulator:
             force += push.generalized
         passive = self._passive(dynamics)
         mass_matrix = _braked(dynamics.mass_matrix, force, passive) if passive else dynamics.mass_matrix
-        touches = self._touches(dynamics, time)
-        solution = solve_contact(
+        touches, solve = self._touches(dynamics, time)
+        solution = solve(
             mass_matrix, self.timestep * force, dynamics.state.v, touches.contacts, self.timestep
         )
         q = self.robot.integrate(dynamics.state.q, self.timestep * solution.velocity)
@@ -108,11 +110,13 @@ class Simulator:
             contact_residual=solution.residual,
         )
 
-    def _touches(self, dynamics: Dynamics, time: float) -> Touches:
-        """All points that may touch: soles, and other bodies in a fall."""
+    def _touches(self, dynamics: Dynamics, time: float) -> tuple[Touches, Callable[..., ContactSolution]]:
+        """All points that may touch, soles and other bodies in a fall, and what solves for them."""
         soles = self._soles.touches(dynamics, self.ground, time)
         bodies = self._bodies.touches(dynamics.state, self.ground.floor)
-        return soles if bodies is None else together(soles, bodies)
+        if bodies is None:
+            return soles, solve_contact
+        return together(near_points(soles), bodies), solve_lying
 
     def _passive(self, dynamics: Dynamics) -> list[ImplicitTorque]:
         """What joints do of themselves: their stops, and their friction if they have any."""

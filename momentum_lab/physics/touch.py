@@ -1,24 +1,21 @@
-"""Which points of the robot may touch the ground, and how they move: soles always, other bodies in a fall."""
+"""Which points of the robot may touch the ground, and how they move: the corners of its soles."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-import pinocchio as pin
 
 from momentum_lab.compiled import compiled
 from momentum_lab.momentum.foot_ground import velocity_at
 from momentum_lab.physics.contact import Contacts
-from momentum_lab.physics.ground import Ground, Patch
+from momentum_lab.physics.ground import Ground
 from momentum_lab.robot.model import RobotModel
-from momentum_lab.robot.state import Dynamics, State
+from momentum_lab.robot.state import Dynamics
 
 # Points this close to the ground take part in the contact problem, m.
-_MARGIN = 0.01
-# Instead of a foot's index.
-_OTHER = np.array([-1])
+MARGIN = 0.01
 _MATRIX, _VECTOR, _STACK = "f8[:, ::1]", "f8[::1]", "f8[:, :, ::1]"
 
 
@@ -126,7 +123,7 @@ def placed_soles(
                 place = origin[foot, k] + turn[k, 0] * x + turn[k, 1] * y + turn[k, 2] * z
                 position[foot, i, k] = place
                 gap[foot, i] += (place - plane_origin[foot, k]) * axes[k, 2]
-            near[foot] |= not gap[foot, i] > _MARGIN
+            near[foot] |= not gap[foot, i] > MARGIN
     feet = np.flatnonzero(near)
     bodies = len(feet)
     spread, carried = np.zeros((12 * bodies, 6 * bodies)), np.empty(6 * bodies)
@@ -145,6 +142,22 @@ def placed_soles(
         origin[feet],
         feet,
     )
+
+
+def near_points(touches: Touches) -> Touches:
+    """Only the points that are near their ground, as of other bodies: of a sole on edge, those of that edge."""
+    contacts = touches.contacts
+    near = contacts.gap < MARGIN
+    if near.all():
+        return touches
+    frames = contacts.spread.shape[1]
+    contacts = replace(
+        contacts,
+        spread=contacts.spread.reshape(-1, 3, frames)[near].reshape(-1, frames),
+        gap=contacts.gap[near],
+        friction=contacts.friction[near],
+    )
+    return replace(touches, contacts=contacts, position=touches.position[near])
 
 
 def together(*groups: Touches) -> Touches:
@@ -172,101 +185,3 @@ def _blocks(parts: Sequence[np.ndarray]) -> np.ndarray:
         whole[row : row + len(part), column : column + part.shape[1]] = part
         row, column = row + len(part), column + part.shape[1]
     return whole
-
-
-class BodyPoints:
-    """The points of all bodies but the soles, looked at only when one of them may be near the floor.
-
-    No point of a body is faster than the sum of what each velocity of the robot can move it by, |v_j| times the
-    longest lever there can be. Until that has used up its clearance, the body cannot have reached the floor, and
-    no kinematics are needed. A state that does not follow the last one seen is always looked at.
-
-    Attributes:
-        reach: how far a unit of each velocity can move any point of each body in a step (B, nv), m s.
-    """
-
-    def __init__(self, robot: RobotModel, timestep: float) -> None:
-        model = robot.model
-        links = [(model.frames[robot.frame(link)], points) for link, points in robot.spec.fall_points.items()]
-        self._model, self._data = model, model.createData()
-        self._joints = [int(frame.parentJoint) for frame, _ in links]
-        self._points = [
-            np.array([frame.placement.act(np.array(p)) for p in points]) for frame, points in links
-        ]
-        reaches = [
-            reach_of(model, joint, points) for joint, points in zip(self._joints, self._points, strict=True)
-        ]
-        self.reach = timestep * np.array(reaches)
-        self._expected: State | None = None
-        self._clearance = np.zeros(len(links))
-        self._clear = False
-
-    def follow(self, state: State) -> None:
-        """Note that `state` is where the last step has led."""
-        self._expected = state
-        self._clear = still_clear(self._clearance, self.reach, state.v)
-
-    def touches(self, state: State, floor: Patch) -> Touches | None:
-        """The points near the floor, body by body; None when there are none."""
-        if not self._points or (self._clear and state is self._expected):
-            return None
-        pin.forwardKinematics(self._model, self._data, state.q)
-        positions = [self._in_world(j, points) for j, points in zip(self._joints, self._points, strict=True)]
-        gaps = [floor.gap(position) for position in positions]
-        self._clearance = np.array([gap.min() for gap in gaps])
-        if not self._clearance.min() < _MARGIN:  # so that NaN, too, touches nothing
-            return None
-        pin.computeJointJacobians(self._model, self._data)
-        touches = [
-            self._touch(joint, position[gap < _MARGIN], gap[gap < _MARGIN], floor)
-            for joint, position, gap in zip(self._joints, positions, gaps, strict=True)
-            if gap.min() < _MARGIN
-        ]
-        return together(*touches)
-
-    def _in_world(self, joint: int, points: np.ndarray) -> np.ndarray:
-        placement = self._data.oMi[joint]
-        return points @ placement.rotation.T + placement.translation
-
-    def _touch(self, joint: int, position: np.ndarray, gap: np.ndarray, floor: Patch) -> Touches:
-        jacobian = np.ascontiguousarray(
-            pin.getJointJacobian(self._model, self._data, joint, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
-        )
-        origin = self._data.oMi[joint].translation.copy()
-        spread = spread_of(position, origin, np.ascontiguousarray(floor.rotation))
-        contacts = Contacts(jacobian, spread, gap, np.full(gap.size, floor.friction), np.zeros(6))
-        return Touches(contacts, position, origin.reshape(1, 3), _OTHER)
-
-
-def reach_of(model: pin.Model, joint: int, points: np.ndarray) -> np.ndarray:
-    """How fast a unit of each velocity of the robot can at most move any of a body's points (nv,), m or none.
-
-    Args:
-        model: a tree of revolute joints on a free-flyer.
-        joint: what carries the body.
-        points: in the frame of that joint (n, 3), m.
-    """
-    reach, lever = np.zeros(model.nv), float(np.linalg.norm(points, axis=1).max())
-    while joint > 1:
-        reach[model.idx_vs[joint]] = lever
-        lever += float(np.linalg.norm(model.jointPlacements[joint].translation))
-        joint = model.parents[joint]
-    reach[:3], reach[3:6] = 1.0, lever
-    return reach
-
-
-@compiled(f"b1({_VECTOR}, {_MATRIX}, {_VECTOR})")
-def still_clear(clearance: np.ndarray, reach: np.ndarray, velocity: np.ndarray) -> bool:
-    """Whether all bodies are surely clear of the floor after one more step; their clearance shrinks by that step.
-
-    Args:
-        clearance: at least so far is each body from the floor (B,), m; changed in place.
-        reach: how far a unit of each velocity can move any point of each body in a step (B, nv), m s.
-        velocity: of the step (nv,).
-    """
-    clear = True
-    for body in range(len(clearance)):
-        for j in range(len(velocity)):
-            clearance[body] -= reach[body, j] * abs(velocity[j])
-        clear &= clearance[body] > _MARGIN
-    return clear

@@ -55,7 +55,7 @@ class FakeGui:
         self.widgets: dict[str, FakeHandle] = {}
         self.html: list[FakeHandle] = []
 
-    def add_html(self, content: str, visible: bool = True) -> FakeHandle:
+    def add_html(self, content: str, visible: bool = True, order: float = 0.0) -> FakeHandle:
         self.html.append(FakeHandle(content=content, visible=visible))
         return self.html[-1]
 
@@ -85,6 +85,9 @@ class FakeGui:
 
     def add_form(self, label: str | None, **kw: Any) -> FakeHandle:
         return FakeHandle(label=label, **kw)
+
+    def add_progress_bar(self, value: float, **kw: Any) -> FakeHandle:
+        return FakeHandle(value=value, **kw)
 
     def add_uplot(self, data: Any, series: Any, **kw: Any) -> FakeHandle:
         return self._add(f"plot {len(self.widgets)}", data=data, series=series, **kw)

@@ -5,19 +5,23 @@ from __future__ import annotations
 import io
 import tempfile
 
+import msgspec
 import numpy as np
 import pytest
 from PIL import Image
 
+from momentum_lab.app import recorder
 from momentum_lab.app.birth import warm_up
 from momentum_lab.app.exporter import finished, made, made_elsewhere
 from momentum_lab.app.playback import Playback
 from momentum_lab.app.snapshot import encoded
-from momentum_lab.app.wire import RunTaken, packed, unpacked_answer
+from momentum_lab.app.wire import RunTaken, packed, rows_of, unpacked_answer
 from momentum_lab.beside import Beside
 from momentum_lab.errors import InputError
 from momentum_lab.events import ApplyPush, SetBeside, SetGain, SetPriority
 from momentum_lab.physics.push import Push
+from momentum_lab.recording import Layout
+from momentum_lab.robot.model import RobotModel
 from momentum_lab.run_file import decoded, run_of_trace
 from momentum_lab.scenario import Scenario
 from momentum_lab.trace import load_trace
@@ -64,6 +68,20 @@ def test_every_other_kind(taken):
     assert made("table", taken).startswith(b"time [s],q/base_x [m],")
     assert b"__VISER_EMBED_DATA__" in made("recording", taken)
     assert Image.open(io.BytesIO(made("plots", taken))).format == "PNG"
+
+
+@pytest.mark.parametrize("kind", ["recording", "viser"])
+def test_recordings_are_of_what_happens_around_the_pushes(taken, monkeypatch, kind):
+    """A robot that stands for a minute and is pushed after 50 s: from 49 s to 5 s after the push."""
+    layout = Layout.of(RobotModel.named("g1"))
+    rows = np.repeat(rows_of(taken.rows, layout.width)[:1], 60, axis=0)
+    rows[:, layout.slices["time"]] = np.arange(60.0)[:, None]
+    late = msgspec.structs.replace(taken, rows=rows.tobytes(), pushes=(Push(force=40.0, start=50.0),))
+    monkeypatch.setattr(recorder, "html_file", lambda run: run.recording)
+    monkeypatch.setattr(recorder, "viser_file", lambda run: run.recording)
+    times = made(kind, late).column("time")
+    assert (times[0], times[-1]) == (49.0, 55.0)
+    assert len(rows_of(late.rows, layout.width)) == 60
 
 
 def test_a_recording_made_elsewhere_is_the_one_made_here(taken):

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import re
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
-from momentum_lab.app import apart
+from momentum_lab.app import apart, library
 from momentum_lab.app.library import Library
 from momentum_lab.errors import LabError
 from momentum_lab.lesson.loader import lesson_files
@@ -77,11 +79,27 @@ def test_whatever_is_wrong_is_told_with_file_and_line(tmp_path: Path, change: tu
         Library(tmp_path).rehearse(path, "g1")
 
 
-def test_script_that_never_ends_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_script_that_never_ends_is_given_up_and_keeps_nobody_from_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sound = written(tmp_path, SHORT).rename(tmp_path / "02_sound.py")
     path = written(tmp_path, ("RUNS =", "while True: pass\nRUNS ="))
+    lessons = Library(tmp_path)
+    record = lessons.rehearse(sound, "g1")
+    begun, went_on = threading.Event(), []
+
+    def rehearsed_meanwhile(file: Path, robot: str) -> object:
+        begun.set()
+        went_on.append(meanwhile.result(10.0) is record)
+        return apart.rehearsed_apart(file, robot)
+
+    monkeypatch.setattr(library, "rehearsed_apart", rehearsed_meanwhile)
     monkeypatch.setattr(apart, "_PATIENCE", 0.5)
-    with pytest.raises(LabError, match=r"01_leaning_in\.py:1: got no end within 0\.5 s"):
-        Library(tmp_path).rehearse(path, "g1")
+    with ThreadPoolExecutor() as pool:
+        meanwhile = pool.submit(lambda: begun.wait() and lessons.rehearse(sound, "g1"))
+        with pytest.raises(LabError, match=r"01_leaning_in\.py:1: got no end within 0\.5 s"):
+            lessons.rehearse(path, "g1")
+    assert went_on == [True]
 
 
 def test_script_that_has_gone_is_told(tmp_path: Path) -> None:

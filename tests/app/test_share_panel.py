@@ -9,8 +9,12 @@ from types import SimpleNamespace
 
 import pytest
 
+from momentum_lab.app import share_panel
+from momentum_lab.app.exporter import finished
 from momentum_lab.app.kept_before import WAY_BACK
 from momentum_lab.app.playback import Playback
+from momentum_lab.app.reel import Reel
+from momentum_lab.app.robots import LoadedRobot
 from momentum_lab.app.share_panel import SharePanel, Sharing, file_name, opened_words
 from momentum_lab.app.wire import Opened, RunTaken
 from momentum_lab.events import ApplyPush, Pause, SetPriority
@@ -28,7 +32,7 @@ class Desk:
         self.gui, self.told, self.opened, self.sent = FakeGui(), [], [], {}
         self.playback = Playback(Scenario("My run!", robot="g1"))
         self.address = FakeHandle(value="")
-        self.lines, self.stops = [], False
+        self.begun, self.lines, self.stops = [], [], False
         self.said, self.warned, self.taken_back = [], [], []
         sharing = Sharing(
             self.playback.taken,
@@ -37,6 +41,7 @@ class Desk:
             self.told.append,
             lambda name, content: self.sent.update({name: content}),
             lambda: b"picture",
+            self.reel,
             self.film,
             URL,
             lambda: self.taken_back.append(True),
@@ -45,7 +50,12 @@ class Desk:
         )
         self.panel = SharePanel(self.gui, sharing, self.address, clock=itertools.count(0.0, 10.0).__next__)
 
-    def film(self, taken: RunTaken, height: int, report: Callable[[float], None]) -> bytes:
+    def reel(self, taken: RunTaken) -> Reel:
+        run = finished(taken)
+        return Reel.of(run, LoadedRobot(run.robot, (), run.recording.layout))
+
+    def film(self, reel: Reel, height: int, report: Callable[[float], None]) -> bytes:
+        self.begun.append(self.gui.html[-1].content)
         for done in (0.25, 0.5, 1.0):
             report(done)
             self.lines.append(self.gui.html[-1].content)
@@ -162,6 +172,19 @@ def test_the_run_file_and_the_picture_are_sent(desk):
     assert not desk.gui.widgets["Download"].disabled
 
 
+def test_what_a_table_leaves_out_is_told_until_the_next_download(desk, monkeypatch):
+    thin = b"time [s],com/x [m]\r\n0,0\r\n0.006,0\r\n0.012,0\r\n"
+    monkeypatch.setattr(share_panel, "made_elsewhere", lambda kind, taken: thin)
+    desk.gui.widgets["file"].value = "table (.csv)"
+    desk.do("Download")
+    assert desk.sent == {"my-run-g1.csv": thin}
+    assert "one tick in 6, a row each 6 ms" in desk.gui.html[-1].content
+    assert desk.gui.html[-1].visible
+    desk.gui.widgets["file"].value = "run file (.json)"
+    desk.do("Download")
+    assert not desk.gui.html[-1].visible
+
+
 @pytest.mark.parametrize(("what", "height"), [("film (.mp4)", 720), ("small film (.mp4)", 360)])
 def test_a_film_says_how_far_it_is(desk, what, height):
     desk.playback.tick(5)
@@ -176,7 +199,26 @@ def test_a_film_says_how_far_it_is(desk, what, height):
     assert not desk.gui.widgets["Stop the film"].visible
 
 
+def test_before_a_film_begins_it_says_from_when_to_when_it_is_and_how_long_it_takes(desk):
+    desk.playback.take(ApplyPush(Push(force=20.0)))
+    desk.playback.tick(290)  # a picture each 40 ms: 0, 40, ..., 280
+    desk.gui.widgets["file"].value = "film (.mp4)"
+    desk.do("Download")
+    desk.do("Download")
+    assert all("Film from 0.0 s to 0.3 s of the run" in line for line in (*desk.begun, *desk.lines))
+    assert "8 pictures; the first one tells how long it takes" in desk.begun[0]
+    assert "8 pictures; it takes about 30 s" in desk.begun[1]  # what the first film took
+
+
+def test_a_film_without_a_push_says_so(desk):
+    desk.playback.tick(5)
+    desk.gui.widgets["file"].value = "small film (.mp4)"
+    desk.do("Download")
+    assert "in which there was no push" in desk.begun[0]
+
+
 def test_a_film_can_be_stopped_and_taken_again(desk):
+    desk.playback.tick(5)
     desk.stops = True
     desk.gui.widgets["file"].value = "film (.mp4)"
     desk.do("Download")

@@ -53,6 +53,17 @@ def test_own_presets_are_kept_and_found_again(own_folder):
     assert "my-own" not in presets("slack-qp")
 
 
+def test_a_preset_may_lie_anywhere(tmp_path):
+    path = tmp_path / "Of a friend.toml"
+    path.write_text("[gains]\nlinear_damping = 7.0\n")
+    assert preset_named(str(path), "computed-torque").gains == {"linear_damping": 7.0}
+    path.write_text("[gains]\nno_such_gain = 7.0\n")
+    with pytest.raises(InputError, match=r"^preset: got .*friend\.toml; allowed: .*no_such_gain"):
+        preset_named(str(path), "computed-torque")
+    with pytest.raises(InputError, match="No such file"):
+        preset_named(str(tmp_path / "none.toml"), "computed-torque")
+
+
 @pytest.mark.parametrize("name", ["soft", "", "../up", "Big", "a" * 41, "a b", "ä"])
 def test_names_that_are_refused(name, own_folder):
     with pytest.raises(InputError, match=r"^preset: got .*; allowed: 1 to 40 small letters"):

@@ -19,7 +19,7 @@ from momentum_lab.events import LoggedEvent, SetFriction, SetGains
 from momentum_lab.experiments.least_span import LEAST
 from momentum_lab.experiments.run_plots import along, over_time, png
 from momentum_lab.experiments.run_report import checks, report
-from momentum_lab.experiments.run_table import header, table
+from momentum_lab.experiments.run_table import header, table, thinned_words
 from momentum_lab.finished import FinishedRun
 from momentum_lab.headless import Timing
 from momentum_lab.physics.push import Push
@@ -154,6 +154,15 @@ def test_a_long_run_gives_a_thinner_table(run):
     lines = table(run, most=100).decode().splitlines()
     assert len(lines) == 1 + 100
     assert float(lines[2].split(",")[0]) == pytest.approx(5 * run.scenario.timestep)
+
+
+def test_a_thinner_table_says_how_thin_it_is(run):
+    """500 ticks of 1 ms: all of them, every fifth, a single one, none."""
+    words = {most: thinned_words(table(run, most), run.scenario.timestep) for most in (500, 100, 1)}
+    assert words[100].startswith("The table holds one tick in 5, a row each 5 ms")
+    assert words[500] == words[1] == ""
+    empty = dataclasses.replace(run, recording=Recording(run.recording.layout, 1))
+    assert thinned_words(table(empty), run.scenario.timestep) == ""
 
 
 def test_a_robot_at_rest_looks_at_rest():

@@ -139,16 +139,24 @@ def find_body(model: pin.Model, masses: dict[str, float], soles: Sequence[str]) 
 
 
 def _frames(model: pin.Model, soles: Sequence[str]) -> tuple[int, int]:
-    for name in soles:
-        if not model.existFrame(name):
-            tips = [
-                frame.name
-                for frame in model.frames
-                if frame.type == pin.FrameType.BODY and not model.subtrees[frame.parentJoint][1:]
-            ]
-            raise RobotError("soles", name, f"frames of the URDF; at the ends of its tree: {', '.join(tips)}")
+    unknown = ", ".join(name for name in soles if not model.existFrame(name))
+    if unknown or len(soles) != 2:
+        given = unknown or ", ".join(soles) or "nothing"
+        ends = ", ".join(_tips(model))
+        raise RobotError(
+            "soles", given, f"LEFT,RIGHT: two frames of the URDF; at the ends of its tree: {ends}"
+        )
     left, right = (int(model.getFrameId(name)) for name in soles)
     return left, right
+
+
+def _tips(model: pin.Model) -> list[str]:
+    """Links that no joint comes after: hands, feet and head are among them."""
+    return [
+        frame.name
+        for frame in model.frames
+        if frame.type == pin.FrameType.BODY and not model.subtrees[frame.parentJoint][1:]
+    ]
 
 
 def _leg_chains(

@@ -190,7 +190,7 @@ def test_feet_that_are_lines_or_points_are_refused(write_biped: WriteBiped, size
     [
         (
             ("left_foot", "right_foot"),
-            r"soles: got left_foot; allowed: frames of the URDF; at the ends of its tree: ",
+            r"soles: got left_foot, right_foot; allowed: LEFT,RIGHT: two frames of the URDF; at the ends of its tree",
         ),
         (
             ("left_knee_link", "left_ankle_roll_link"),
