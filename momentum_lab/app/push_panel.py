@@ -23,7 +23,7 @@ from momentum_lab.palette import VERMILLION
 from momentum_lab.physics.push import Push
 from momentum_lab.recording import Sample
 
-# Slower than this, which the hint below says, the robot stands still, and its support is what the next push will meet, m/s.
+# Slower than this, which the hint says, the robot stands still, and its support is what the next push meets, m/s.
 _STILL = 0.02
 _BOUND = (
     "Counted from where the robot was when its CoM was last slower than 2 cm/s, in the direction of the push: "

@@ -70,7 +70,7 @@ class Learner:
         if step.kind == "choice":
             self.choose(step.right[0])
         elif step.kind == "number":
-            self.type(f"{step.measured:.3g}")
+            self.type(f"{step.measured:.3g}", "Enter")
 
     def choose(self, place: int) -> None:
         """Choose an option, counted from 0."""

@@ -89,7 +89,7 @@ def predict_wrongly_in_haste(learner: Learner) -> None:
         learner.lab.expect_text(rf"{number} mm\s*← your prediction")
     learner.lab.dismiss_notices()
     learner.lab.save(OUTPUT / "learn_number_test.png")
-    learner.type(FAR_OFF, "i")
+    learner.type(FAR_OFF, "Enter", "i")
     learner.at(CHOICE)
 
 
