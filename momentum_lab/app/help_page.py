@@ -50,7 +50,8 @@ where you began, or press **Z**, and nobody is pushed. With a finger, or a hand 
 pushes the robot* in the Push tab (**T**). *pulls* there lets your hand move up and sideways, not over the ground.
 
 **Without a mouse.** Tab and Shift+Tab go from widget to widget, arrows move a slider, Home and End take it to its
-ends. Once the picture has the focus, W, A, S, D, Q and E move the camera; the View tab has five fixed views.
+ends. Letters typed into a box are no keys of the lab; Enter leaves a box of a number. Once the picture has the
+focus, W, A, S, D, Q and E move the camera; the View tab has five fixed views.
 
 **With a screen reader.** Sliders say their name, value and unit; the status is read out when it changes. The 3D
 picture and the plots have a name but cannot be read: the status, the Runs table and `momentum-lab run --json` have
