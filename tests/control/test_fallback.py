@@ -95,7 +95,7 @@ def test_it_says_what_could_not_be_met_and_what_is_done_instead(lost):
     assert not output.foot_wrench_admissible.any()
 
 
-@pytest.mark.parametrize("step", ["AccelerationProgram.solve", "Footing.share"])
+@pytest.mark.parametrize("step", ["AccelerationProgram.solve", "LoadSharing.share"])
 def test_whichever_program_fails_its_reason_is_passed_on(robot, step, monkeypatch):
     def fails(*_):
         raise SolverError("cannot be met: the thing")
