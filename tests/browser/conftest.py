@@ -32,17 +32,6 @@ FLAGS = (
 CROSSED = "Tried to update non-existent component"
 # Viser keeps a drag in the scene from selecting text, in a listener that Chromium has been told will not.
 PASSIVE = "Unable to preventDefault inside passive event listener"
-# Software would draw as often as it can: 15 pictures a second leave the cores to the lab and to the other tests.
-FEWER_PICTURES = """
-const draw = window.requestAnimationFrame.bind(window), forget = window.cancelAnimationFrame.bind(window);
-const drawn = new Map();
-window.requestAnimationFrame = (then) => {
-    const wait = () => drawn.set(id, draw((now) => { drawn.delete(id); then(now); }));
-    const id = setTimeout(wait, 50);
-    return id;
-};
-window.cancelAnimationFrame = (id) => { clearTimeout(id); forget(drawn.get(id)); drawn.delete(id); };
-"""
 SERVE = """
 import sys
 from pathlib import Path
@@ -120,7 +109,6 @@ def open_page(browser: Browser) -> Iterator[Opener]:
     def open_page(url: str, width: int = 1280, height: int = LOW, fingers: bool = False) -> LabPage:
         page = browser.new_page(viewport={"width": width, "height": height}, has_touch=fingers)
         opened.append(page)
-        page.add_init_script(FEWER_PICTURES)
         page.on("console", note)
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.goto(url)
