@@ -11,7 +11,7 @@ from momentum_lab.physics.ground import Patch
 from momentum_lab.physics.touch import MARGIN, Touches, spread_of
 from momentum_lab.robot.model import RobotModel
 from momentum_lab.robot.state import State
-from momentum_lab.robot.terms import Frames, memory_of
+from momentum_lab.robot.terms import Frames, jacobian_at, memory_of
 
 _MATRIX, _VECTOR = "f8[:, ::1]", "f8[::1]"
 
@@ -178,15 +178,7 @@ def touching_bodies(
     row = 0
     for i, one in enumerate(bodies):
         origin[i] = joint_position[joint[one]]
-        x, y, z = origin[i]
-        block = jacobian[6 * i : 6 * i + 6]
-        for j in range(moved_by.shape[1]):
-            part = moved_by[one, j]
-            wx, wy, wz = joint_jacobian[3, j], joint_jacobian[4, j], joint_jacobian[5, j]
-            block[0, j] = part * (joint_jacobian[0, j] + wy * z - wz * y)
-            block[1, j] = part * (joint_jacobian[1, j] + wz * x - wx * z)
-            block[2, j] = part * (joint_jacobian[2, j] + wx * y - wy * x)
-            block[3, j], block[4, j], block[5, j] = part * wx, part * wy, part * wz
+        jacobian_at(origin[i], joint_jacobian, moved_by[one], jacobian[6 * i : 6 * i + 6])
         mine = position[near[body[near] == one]]
         spread[row : row + 3 * len(mine), 6 * i : 6 * i + 6] = spread_of(mine, origin[i], plane_axes)
         row += 3 * len(mine)

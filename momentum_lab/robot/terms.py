@@ -130,6 +130,28 @@ def centroidal_terms(
     return centroidal_map @ velocity, bias, inertia
 
 
+@compiled(f"void({_VECTOR}, {_OF_PINOCCHIO}, {_VECTOR}, {_MATRIX})")
+def jacobian_at(
+    place: np.ndarray, joint_jacobian: np.ndarray, moved_by: np.ndarray, jacobian: np.ndarray
+) -> None:
+    """Fill in how a point of a body moves: column (v, w) of the joints' Jacobian moves it with (v + w x o, w).
+
+    Args:
+        place: the point o in the world (3,), m.
+        joint_jacobian: spatial velocities about the world origin, of which each joint is a column (6, nv).
+        moved_by: 1 for velocities that move the body, 0 for all others (nv,).
+        jacobian: world-aligned, linear first (6, nv); changed in place.
+    """
+    x, y, z = place
+    for j in range(len(moved_by)):
+        part = moved_by[j]
+        wx, wy, wz = joint_jacobian[3, j], joint_jacobian[4, j], joint_jacobian[5, j]
+        jacobian[0, j] = part * (joint_jacobian[0, j] + wy * z - wz * y)
+        jacobian[1, j] = part * (joint_jacobian[1, j] + wz * x - wx * z)
+        jacobian[2, j] = part * (joint_jacobian[2, j] + wx * y - wy * x)
+        jacobian[3, j], jacobian[4, j], jacobian[5, j] = part * wx, part * wy, part * wz
+
+
 @compiled(
     f"Tuple(({_MATRIX}, {_STACK}, {_STACK}, {_MATRIX}))({_OF_PINOCCHIO}, f8[:, :], f8[:, :, :], f8[:, :], "
     f"{_VECTOR}, i8[::1], {_MATRIX}, {_MATRIX}, {_STACK}, {_VECTOR})"
@@ -170,14 +192,7 @@ def frame_terms(
                 place[i] += turn[i, k] * here[k]
                 for j in range(3):
                     axes[frame, i, j] += turn[i, k] * rotation[frame, k, j]
-        x, y, z = place
-        for j in range(size):
-            part = moved_by[frame, j]
-            wx, wy, wz = joint_jacobian[3, j], joint_jacobian[4, j], joint_jacobian[5, j]
-            jacobian[0, j] = part * (joint_jacobian[0, j] + wy * z - wz * y)
-            jacobian[1, j] = part * (joint_jacobian[1, j] + wz * x - wx * z)
-            jacobian[2, j] = part * (joint_jacobian[2, j] + wx * y - wy * x)
-            jacobian[3, j], jacobian[4, j], jacobian[5, j] = part * wx, part * wy, part * wz
+        jacobian_at(place, joint_jacobian, moved_by[frame], jacobian)
         vx, vy, vz, wx, wy, wz = jacobian @ velocity
         ax, ay, az, bx, by, bz = joint_acceleration[carrier[frame]]
         x, y, z = here
